@@ -1,0 +1,1 @@
+//! Clustering of points: k-means and its balanced form, hierarchical clustering, online absorption

@@ -1,0 +1,2 @@
+//! Ground station: plans missions for teams of quadcopters.
+fn main() {}

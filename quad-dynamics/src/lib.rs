@@ -1,0 +1,1 @@
+//! Quadcopter dynamics: loiter speed and states, differentiable models, integration, control and simulation

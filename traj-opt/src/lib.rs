@@ -1,0 +1,1 @@
+//! Optimal control by direct transcription: a structure-exploiting interior-point method, mesh refinement and an adaptive integrator
