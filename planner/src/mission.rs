@@ -1,0 +1,238 @@
+//! What is asked for: the targets, the fleet, how to circle and how to fly in between.
+//!
+//! Everything is SI with angles in radians, in the local east-north-up frame (x east, y north, z up, heights above the
+//! ground). Files, degrees and geographic coordinates belong to the caller.
+
+use quad_dynamics::Vehicle;
+
+/// A mission: who flies where, and within which limits.
+///
+/// Fields are public because a mission is plain data; [`Mission::problems`](Self::problems) says all that is wrong with
+/// one, and [`plan`](crate::plan) refuses a mission that has any.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Mission {
+    /// A name for people.
+    pub name: String,
+    /// Where the team starts and ends: east, north (m).
+    pub depot: [f64; 2],
+    /// The vehicles.
+    pub fleet: Fleet,
+    /// How targets are circled.
+    pub loiter: LoiterSettings,
+    /// How vehicles fly between circles.
+    pub transition: TransitionSettings,
+    /// What must be circled.
+    pub targets: Vec<Target>,
+    /// Targets whose cluster has at most this diameter (m) are circled as one; 0 leaves every target alone.
+    pub merge_within: f64,
+    /// What is minimised over the routes.
+    pub objective: Objective,
+    /// How routes are found.
+    pub pipeline: Pipeline,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+/// The vehicles of a mission, all alike.
+#[derive(Debug, Clone)]
+pub struct Fleet {
+    /// How many there are, at least 1.
+    pub vehicles: usize,
+    /// The parameters of each.
+    pub vehicle: Vehicle,
+    /// Least distance between two vehicles in the air (m); also sets how far apart the pads lie.
+    pub separation: f64,
+    /// Longest flight of a vehicle (s); infinite if there is no limit.
+    pub endurance: f64,
+}
+
+/// How targets are circled. Defaults: radius 3 m, height 1.5 m, one full circle, thrust budget 0.6.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoiterSettings {
+    /// Radius of the circle (m), unless a target has its own.
+    pub radius: f64,
+    /// Height above the ground (m), unless a target has its own.
+    pub height: f64,
+    /// Angle flown around each target (rad); `2 pi` is one full circle, more is overlap.
+    pub sweep: f64,
+    /// Share of the greatest thrust that a loiter may use, in (0, 1].
+    pub thrust_budget: f64,
+    /// Where the nose points.
+    pub yaw: LoiterYaw,
+    /// Greatest speed on the circle (m/s); infinite if there is no limit.
+    pub speed_limit: f64,
+    /// Greatest horizontal acceleration on the circle (m/s^2), as an autopilot limits it; infinite if there is no limit.
+    pub acceleration_limit: f64,
+}
+
+impl Default for LoiterSettings {
+    fn default() -> Self {
+        Self {
+            radius: 3.0,
+            height: 1.5,
+            sweep: std::f64::consts::TAU,
+            thrust_budget: 0.6,
+            yaw: LoiterYaw::AlongTrack,
+            speed_limit: f64::INFINITY,
+            acceleration_limit: f64::INFINITY,
+        }
+    }
+}
+
+/// Where the nose points while circling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LoiterYaw {
+    /// Along the track, as in the paper.
+    #[default]
+    AlongTrack,
+    /// At the target.
+    AtTarget,
+}
+
+/// How vehicles fly between circles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransitionSettings {
+    /// The model whose minimum time is sought.
+    pub model: Model,
+    /// Which entries of the next circle are tried.
+    pub entries: Entries,
+    /// Segments of the mesh, at least 4.
+    pub segments: usize,
+    /// How the optimal control problem is made finite.
+    pub transcription: Transcription,
+    /// Share of the greatest thrust (and of the body-rate limits) that a transition may use, in (0, 1].
+    pub thrust_budget: f64,
+    /// Distance kept from every target (m, horizontal), unless a target has its own.
+    pub safe_distance: f64,
+    /// Least and greatest height above the ground on the way (m).
+    pub heights: [f64; 2],
+    /// Limits of the jerk-limited model; the others ignore them.
+    pub shaping: ShapingLimits,
+}
+
+impl Default for TransitionSettings {
+    fn default() -> Self {
+        Self {
+            model: Model::ThrustRate,
+            entries: Entries::Sampled(16),
+            segments: 40,
+            transcription: Transcription::RungeKutta,
+            thrust_budget: 0.9,
+            safe_distance: 1.5,
+            heights: [0.5, 30.0],
+            shaping: ShapingLimits::default(),
+        }
+    }
+}
+
+/// The shaping limits of an autopilot, for [`Model::JerkLimited`]. Defaults: ArduCopter's in guided flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapingLimits {
+    /// Greatest speed (m/s).
+    pub speed: f64,
+    /// Greatest acceleration (m/s^2).
+    pub acceleration: f64,
+    /// Greatest jerk (m/s^3).
+    pub jerk: f64,
+}
+
+impl Default for ShapingLimits {
+    fn default() -> Self {
+        Self { speed: 10.0, acceleration: 2.5, jerk: 5.0 }
+    }
+}
+
+/// A model of the vehicle for transitions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Model {
+    /// Position and velocity under a thrust vector.
+    PointMass,
+    /// Position, velocity and acceleration under bounded jerk: what an autopilot's shaping leaves of the others.
+    JerkLimited,
+    /// Position, velocity and attitude under collective thrust and body rates.
+    ThrustRate,
+    /// Position, velocity, attitude and body rates under four rotor thrusts.
+    RigidBody,
+}
+
+/// Which entries of the next circle are tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entries {
+    /// So many equally spaced angles, each in both directions.
+    Sampled(usize),
+    /// The angle is a variable of the optimal control problem, in both directions.
+    Free,
+}
+
+/// How the optimal control problem is made finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Transcription {
+    /// Multiple shooting with piecewise-constant controls and Runge-Kutta steps: its controls can be flown as they are.
+    RungeKutta,
+    /// Hermite-Simpson collocation.
+    HermiteSimpson,
+    /// Trapezoidal collocation.
+    Trapezoidal,
+}
+
+/// Something to circle.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Target {
+    /// A name for people; empty if it has none.
+    pub name: String,
+    /// East, north (m).
+    pub position: [f64; 2],
+    /// Radius of its circle (m), instead of the mission's.
+    pub radius: Option<f64>,
+    /// Height of its circle (m), instead of the mission's.
+    pub height: Option<f64>,
+    /// Distance kept from it (m), instead of the mission's.
+    pub safe_distance: Option<f64>,
+}
+
+impl Target {
+    /// A target at `position` (east, north in m) with the mission's radius, height and safe distance.
+    #[must_use]
+    pub fn at(position: [f64; 2]) -> Self {
+        Self { position, ..Self::default() }
+    }
+}
+
+/// What is minimised over the routes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Objective {
+    /// The time of the longest route: what batteries and daylight ask for.
+    Makespan,
+    /// The sum over the routes, as in the paper. Without a balance rule one vehicle may do everything.
+    Total,
+}
+
+/// How routes are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Pipeline {
+    /// The paper's: k-means, Christofides in each cluster.
+    Paper,
+    /// Routes optimised for the objective, never worse than the paper's.
+    Optimised,
+}
+
+impl Mission {
+    /// A mission for `vehicles` vehicles of the given kind around `targets`, from a depot at the origin, with default
+    /// settings.
+    #[must_use]
+    pub fn new(vehicle: Vehicle, vehicles: usize, targets: Vec<Target>) -> Self {
+        Self {
+            name: String::new(),
+            depot: [0.0, 0.0],
+            fleet: Fleet { vehicles, vehicle, separation: 3.0, endurance: f64::INFINITY },
+            loiter: LoiterSettings::default(),
+            transition: TransitionSettings::default(),
+            targets,
+            merge_within: 0.0,
+            objective: Objective::Makespan,
+            pipeline: Pipeline::Optimised,
+            seed: 1,
+        }
+    }
+}
