@@ -1,0 +1,115 @@
+//! Where the solver starts.
+
+use crate::{Error, Solution};
+use nalgebra::SVector;
+
+/// A first trajectory: samples over the flight, interpolated linearly onto the mesh, and a final time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guess<const NX: usize, const NU: usize> {
+    final_time: f64,
+    fractions: Vec<f64>,
+    states: Vec<SVector<f64, NX>>,
+    controls: Vec<SVector<f64, NU>>,
+}
+
+impl<const NX: usize, const NU: usize> Guess<NX, NU> {
+    /// A straight line from `initial` to `terminal` with a constant control; `final_time` in s.
+    #[must_use]
+    pub fn line(
+        initial: SVector<f64, NX>,
+        terminal: SVector<f64, NX>,
+        control: SVector<f64, NU>,
+        final_time: f64,
+    ) -> Self {
+        Self {
+            final_time,
+            fractions: vec![0.0, 1.0],
+            states: vec![initial, terminal],
+            controls: vec![control; 2],
+        }
+    }
+
+    /// Samples `(fraction, state, control)` of a function of the fraction of the flight at `n + 1` equidistant points.
+    #[must_use]
+    pub fn from_fn(
+        final_time: f64,
+        n: usize,
+        sample: impl Fn(f64) -> (SVector<f64, NX>, SVector<f64, NU>),
+    ) -> Self {
+        let n = n.max(1);
+        let fractions: Vec<f64> = (0..=n).map(|k| k as f64 / n as f64).collect();
+        let (states, controls) = fractions.iter().map(|&s| sample(s)).unzip();
+        Self { final_time, fractions, states, controls }
+    }
+
+    /// A guess with samples at the given increasing fractions of the flight.
+    ///
+    /// # Errors
+    /// [`Error::InvalidGuess`] if the lists differ in length or are empty.
+    pub fn from_samples(
+        final_time: f64,
+        fractions: Vec<f64>,
+        states: Vec<SVector<f64, NX>>,
+        controls: Vec<SVector<f64, NU>>,
+    ) -> Result<Self, Error> {
+        let n = fractions.len();
+        if n == 0 || states.len() != n || controls.len() != n {
+            return Err(Error::InvalidGuess { fractions: n, states: states.len(), controls: controls.len() });
+        }
+        Ok(Self { final_time, fractions, states, controls })
+    }
+
+    /// The trajectory of a solution, resampled at its knots and at `per_segment - 1` points between them.
+    #[must_use]
+    pub fn from_solution(solution: &Solution<NX, NU>, per_segment: usize) -> Self {
+        let (t0, tf) = (solution.initial_time(), solution.final_time());
+        let times = solution.times();
+        let per = per_segment.max(1);
+        let mut guess = Self { final_time: tf, fractions: vec![], states: vec![], controls: vec![] };
+        for k in 0..times.len() - 1 {
+            for j in 0..per {
+                let t = times[k] + (times[k + 1] - times[k]) * j as f64 / per as f64;
+                guess.push((t - t0) / (tf - t0), solution.state_at(t), solution.control_at(t));
+            }
+        }
+        guess.push(1.0, solution.state_at(tf), solution.control_at(tf));
+        guess
+    }
+
+    fn push(&mut self, fraction: f64, state: SVector<f64, NX>, control: SVector<f64, NU>) {
+        self.fractions.push(fraction);
+        self.states.push(state);
+        self.controls.push(control);
+    }
+
+    /// Final time, s.
+    #[must_use]
+    pub fn final_time(&self) -> f64 {
+        self.final_time
+    }
+
+    /// State and control at a fraction of the flight.
+    #[must_use]
+    pub fn sample(&self, fraction: f64) -> (SVector<f64, NX>, SVector<f64, NU>) {
+        let n = self.fractions.len();
+        let right = self.fractions.partition_point(|&f| f <= fraction).clamp(1, n.max(2) - 1).min(n - 1);
+        let left = right.saturating_sub(1);
+        let width = self.fractions[right] - self.fractions[left];
+        let w = if width > 0.0 { ((fraction - self.fractions[left]) / width).clamp(0.0, 1.0) } else { 0.0 };
+        (
+            self.states[left] * (1.0 - w) + self.states[right] * w,
+            self.controls[left] * (1.0 - w) + self.controls[right] * w,
+        )
+    }
+
+    pub(crate) fn validate(&self, initial_time: f64) -> Result<(), Error> {
+        let finite = self.states.iter().all(|x| x.iter().all(|v| v.is_finite()))
+            && self.controls.iter().all(|u| u.iter().all(|v| v.is_finite()))
+            && self.fractions.iter().all(|v| v.is_finite());
+        if finite && self.final_time.is_finite() && self.final_time > initial_time {
+            Ok(())
+        } else {
+            Err(Error::NonFiniteGuess { final_time: self.final_time })
+        }
+    }
+}

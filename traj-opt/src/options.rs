@@ -1,0 +1,68 @@
+//! Settings of the solver.
+
+use crate::Error;
+
+/// Settings of the interior-point solver.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Options {
+    /// Scaled KKT residual at which a problem counts as solved. Default 1e-8 (that of IPOPT).
+    pub tolerance: f64,
+    /// Scaled KKT residual that counts as acceptable when no further progress is possible. Default 1e-6.
+    pub acceptable_tolerance: f64,
+    /// Limit of iterations. Default 300.
+    pub max_iterations: usize,
+    /// First barrier parameter. Default 0.1 (that of IPOPT).
+    pub initial_mu: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, acceptable_tolerance: 1e-6, max_iterations: 300, initial_mu: 0.1 }
+    }
+}
+
+impl Options {
+    /// Sets [`tolerance`](Self::tolerance).
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Sets [`acceptable_tolerance`](Self::acceptable_tolerance).
+    #[must_use]
+    pub fn with_acceptable_tolerance(mut self, tolerance: f64) -> Self {
+        self.acceptable_tolerance = tolerance;
+        self
+    }
+
+    /// Sets [`max_iterations`](Self::max_iterations).
+    #[must_use]
+    pub fn with_max_iterations(mut self, n: usize) -> Self {
+        self.max_iterations = n;
+        self
+    }
+
+    /// Sets [`initial_mu`](Self::initial_mu).
+    #[must_use]
+    pub fn with_initial_mu(mut self, mu: f64) -> Self {
+        self.initial_mu = mu;
+        self
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), Error> {
+        let positive = [
+            ("tolerance", self.tolerance),
+            ("acceptable_tolerance", self.acceptable_tolerance),
+            ("initial_mu", self.initial_mu),
+        ];
+        for (option, value) in positive {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(Error::InvalidOption { option, value });
+            }
+        }
+        Ok(())
+    }
+}
