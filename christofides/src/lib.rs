@@ -4,6 +4,32 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod algorithm;
+mod error;
+mod euler;
+mod exact;
+mod improve;
+mod lower_bound;
+pub mod matching;
+mod matrix;
 mod metric;
+mod points;
+mod shortcut;
+mod spanning_tree;
+mod tour;
+mod validate;
 
-pub use metric::Metric;
+pub use algorithm::{Options, christofides, solve, solve_path};
+pub use error::Error;
+pub use euler::euler_circuit;
+pub use exact::{exact_path, exact_tour};
+pub use improve::{improve, improve_path};
+pub use lower_bound::{LowerBound, held_karp};
+pub use matching::{Matching, min_weight_perfect_matching};
+pub use matrix::{FromFn, Matrix};
+pub use metric::{Geometry, Metric};
+pub use points::Points;
+pub use shortcut::shortcut;
+pub use spanning_tree::minimum_spanning_tree;
+pub use tour::{Ends, Path, Tour};
+pub use validate::validate;

@@ -1,0 +1,163 @@
+//! Christofides' algorithm, and the whole way from a metric to an improved, bounded tour.
+
+use crate::error::Error;
+use crate::euler::euler_circuit;
+use crate::exact::{exact_path, exact_tour};
+use crate::improve::{improve, improve_path};
+use crate::lower_bound::held_karp;
+use crate::matching::Solver;
+use crate::metric::Metric;
+use crate::shortcut::shortcut;
+use crate::spanning_tree::spanning_tree;
+use crate::tour::{Ends, Path, Tour};
+use crate::validate::{validate_finite, validate_promised};
+
+/// How much work [`solve`] and [`solve_path`] put into a tour.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Options {
+    /// Seed of the generator that chooses kicks. Default 1.
+    pub seed: u64,
+    /// Kicks of the chained local search. Default 1000.
+    pub kicks: usize,
+    /// Iterations of the lower bound's ascent; 0 for no bound. Default 100.
+    pub ascent_iterations: usize,
+    /// Up to this number of vertices the instance is solved to proof. Default 10.
+    pub exact_up_to: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { seed: 1, kicks: 1000, ascent_iterations: 100, exact_up_to: 10 }
+    }
+}
+
+impl Options {
+    /// Sets the seed.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// Sets the number of kicks.
+    #[must_use]
+    pub fn with_kicks(self, kicks: usize) -> Self {
+        Self { kicks, ..self }
+    }
+
+    /// Sets the iterations of the ascent.
+    #[must_use]
+    pub fn with_ascent_iterations(self, ascent_iterations: usize) -> Self {
+        Self { ascent_iterations, ..self }
+    }
+
+    /// Sets the largest number of vertices that is solved to proof.
+    #[must_use]
+    pub fn with_exact_up_to(self, exact_up_to: usize) -> Self {
+        Self { exact_up_to, ..self }
+    }
+}
+
+/// Christofides' algorithm (Christofides 1976): a tour of at most 3/2 times the least cost.
+///
+/// # Errors
+/// Distances that are not finite, symmetric and non-negative; [`Error::TriangleInequality`] if the metric does not
+/// promise the triangle inequality and breaks it.
+pub fn christofides(metric: &impl Metric) -> Result<Tour, Error> {
+    validate_promised(metric)?;
+    let n = metric.len();
+    if n < 4 {
+        return Ok(Tour::measured(metric, (0..n).collect()));
+    }
+    let mut edges = spanning_tree(metric);
+    let odd = odd_vertices(n, &edges);
+    let matching = Solver::default().complete_unchecked(&Subset { metric, vertices: &odd })?;
+    edges.extend(matching.edges().map(|(i, j)| [odd[i], odd[j]]));
+    shortcut(metric, &euler_circuit(n, &edges)?)
+}
+
+fn odd_vertices(n: usize, edges: &[[usize; 2]]) -> Vec<usize> {
+    let mut is_odd = vec![false; n];
+    for &vertex in edges.iter().flatten() {
+        is_odd[vertex] ^= true;
+    }
+    (0..n).filter(|&vertex| is_odd[vertex]).collect()
+}
+
+/// Some vertices of a metric.
+struct Subset<'a, M> {
+    metric: &'a M,
+    vertices: &'a [usize],
+}
+
+impl<M: Metric> Metric for Subset<'_, M> {
+    fn len(&self) -> usize {
+        self.vertices.len()
+    }
+
+    #[inline]
+    fn distance(&self, i: usize, j: usize) -> f64 {
+        self.metric.distance(self.vertices[i], self.vertices[j])
+    }
+}
+
+/// A short tour with a lower bound: exact if small, else Christofides' tour improved within the budget of `options`.
+///
+/// Distances that break the triangle inequality are taken too if the metric says so; the tour then has no guarantee but
+/// its own bound. `should_stop` is asked now and then and ends the improvement early.
+///
+/// # Errors
+/// Distances that are not finite, symmetric and non-negative.
+pub fn solve(
+    metric: &impl Metric,
+    options: &Options,
+    should_stop: &mut dyn FnMut() -> bool,
+) -> Result<Tour, Error> {
+    let _ = should_stop;
+    validate_finite(metric)?;
+    let n = metric.len();
+    if n <= options.exact_up_to.min(16) {
+        return exact_tour(metric);
+    }
+    let start = match christofides(metric) {
+        Err(Error::TriangleInequality { .. }) => Tour::measured(metric, (0..n).collect()),
+        other => other?,
+    };
+    let tour = improve(metric, start)?;
+    if options.ascent_iterations == 0 {
+        return Ok(tour);
+    }
+    let bound = held_karp(metric, options.ascent_iterations)?;
+    Ok(tour.with_lower_bound(bound.value()))
+}
+
+/// A short path with the given ends: exact if small, else improved within the budget of `options`.
+///
+/// # Errors
+/// As [`solve`]; [`Error::VertexOutOfRange`] and [`Error::EqualEnds`].
+pub fn solve_path(
+    metric: &impl Metric,
+    ends: Ends,
+    options: &Options,
+    should_stop: &mut dyn FnMut() -> bool,
+) -> Result<Path, Error> {
+    let _ = should_stop;
+    ends.validate(metric.len())?;
+    validate_finite(metric)?;
+    let n = metric.len();
+    if n <= options.exact_up_to.min(16) {
+        return exact_path(metric, ends);
+    }
+    let mut order: Vec<usize> = (0..n).collect();
+    match ends {
+        Ends::Free => {}
+        Ends::Start(start) => order.swap(0, start),
+        Ends::Both(start, end) => {
+            order.retain(|&v| v != start && v != end);
+            order.insert(0, start);
+            order.push(end);
+        }
+    }
+    improve_path(metric, Path::new(metric, order)?, ends)
+}

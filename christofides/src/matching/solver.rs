@@ -1,0 +1,153 @@
+//! Entry points: sparse graphs, and complete graphs by pricing.
+
+use super::blossoms::Blossom;
+use super::forest::Forest;
+use super::quantise::Scale;
+use super::search::Exposed;
+use crate::error::Error;
+use crate::metric::Metric;
+use crate::validate::validate_finite;
+
+/// A perfect matching with the dual solution that proves it optimal.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[must_use]
+pub struct Matching {
+    pub(crate) mates: Vec<usize>,
+    pub(crate) weight: f64,
+    pub(crate) error_bound: f64,
+    pub(crate) duals: Vec<f64>,
+    pub(crate) blossoms: Vec<Blossom>,
+    pub(crate) innermost: Vec<Option<usize>>,
+}
+
+impl Matching {
+    /// The partner of every vertex.
+    #[must_use]
+    pub fn mates(&self) -> &[usize] {
+        &self.mates
+    }
+
+    /// The matched edges, smaller vertex first.
+    pub fn edges(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.mates.iter().enumerate().filter(|&(u, &v)| u < v).map(|(u, &v)| (u, v))
+    }
+
+    /// The sum of the weights of the matched edges.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// By how much the weight can exceed the optimum, because weights are rounded to integers inside.
+    #[must_use]
+    pub fn error_bound(&self) -> f64 {
+        self.error_bound
+    }
+
+    /// The dual variables of the vertices, of either sign.
+    #[must_use]
+    pub fn duals(&self) -> &[f64] {
+        &self.duals
+    }
+
+    /// The blossoms, inner ones first.
+    #[must_use]
+    pub fn blossoms(&self) -> &[Blossom] {
+        &self.blossoms
+    }
+}
+
+/// A minimum-weight perfect matching of the complete graph of a metric (or of any symmetric distance).
+///
+/// # Errors
+/// [`Error::OddVertexCount`], and distances that are not finite, symmetric and non-negative.
+pub fn min_weight_perfect_matching(metric: &impl Metric) -> Result<Matching, Error> {
+    Solver::default().complete(metric)
+}
+
+/// A minimum-weight perfect matching of a sparse graph on `n` vertices; weights may be of either sign.
+///
+/// # Errors
+/// [`Error::OddVertexCount`], [`Error::VertexOutOfRange`], [`Error::NonFiniteDistance`], [`Error::NoPerfectMatching`].
+pub fn sparse_min_weight_perfect_matching(
+    n: usize,
+    edges: &[(usize, usize, f64)],
+) -> Result<Matching, Error> {
+    Solver::default().sparse(n, edges)
+}
+
+/// A solver whose storage is reused from call to call.
+#[derive(Debug, Default)]
+pub struct Solver {
+    forest: Forest,
+    edges: Vec<(u32, u32, i64)>,
+}
+
+impl Solver {
+    /// See [`min_weight_perfect_matching`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn complete(&mut self, metric: &impl Metric) -> Result<Matching, Error> {
+        validate_finite(metric)?;
+        self.complete_unchecked(metric)
+    }
+
+    pub(crate) fn complete_unchecked(&mut self, metric: &impl Metric) -> Result<Matching, Error> {
+        let n = metric.len();
+        let mut edges = Vec::with_capacity(n * n.saturating_sub(1) / 2);
+        for i in 0..n {
+            edges.extend((i + 1..n).map(|j| (i, j, metric.distance(i, j))));
+        }
+        self.sparse(n, &edges)
+    }
+
+    /// See [`sparse_min_weight_perfect_matching`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn sparse(&mut self, n: usize, edges: &[(usize, usize, f64)]) -> Result<Matching, Error> {
+        if n % 2 == 1 {
+            return Err(Error::OddVertexCount { n });
+        }
+        let mut greatest = 0.0_f64;
+        for &(i, j, weight) in edges {
+            if let Some(vertex) = [i, j].into_iter().find(|&vertex| vertex >= n) {
+                return Err(Error::VertexOutOfRange { vertex, n });
+            }
+            if !weight.is_finite() {
+                return Err(Error::NonFiniteDistance { i, j });
+            }
+            greatest = greatest.max(weight.abs());
+        }
+        let scale = Scale::new(greatest);
+        self.edges.clear();
+        let scaled = edges.iter().filter(|edge| edge.0 != edge.1);
+        self.edges.extend(scaled.map(|&(u, v, weight)| (u as u32, v as u32, scale.weight(weight))));
+        self.forest.graph.rebuild(n, &self.edges);
+        self.forest.start_greedily();
+        self.forest.run().map_err(|Exposed(exposed)| Error::NoPerfectMatching { exposed })?;
+        let mut matching = self.export(scale);
+        matching.weight = edges
+            .iter()
+            .filter(|&&(u, v, _)| u < v && matching.mates[u] == v || v < u && matching.mates[v] == u)
+            .map(|edge| edge.2)
+            .sum();
+        Ok(matching)
+    }
+
+    fn export(&mut self, scale: Scale) -> Matching {
+        self.forest.match_inside();
+        let n = self.forest.n_vertices();
+        let (blossoms, innermost) = self.forest.export(scale);
+        Matching {
+            mates: (0..n).map(|v| self.forest.nodes[v].mate.outer as usize).collect(),
+            weight: 0.0,
+            error_bound: scale.error_bound(n),
+            duals: (0..n).map(|v| scale.real(self.forest.nodes[v].dual)).collect(),
+            blossoms,
+            innermost,
+        }
+    }
+}
