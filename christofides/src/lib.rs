@@ -5,10 +5,12 @@
 #![deny(missing_docs)]
 
 mod algorithm;
+mod delaunay;
 mod error;
 mod euler;
 mod exact;
 mod improve;
+mod kd_tree;
 mod lower_bound;
 pub mod matching;
 mod matrix;

@@ -194,6 +194,11 @@ impl Forest {
         record.dual + self.label(node) as i64 * (self.now - record.since)
     }
 
+    /// The dual of a node when no tree is alive.
+    pub fn dual_at_rest(&self, node: u32) -> i64 {
+        self.nodes[node as usize].dual
+    }
+
     /// Gives a top-level node another label, its dual and radii continuing from where they are.
     pub fn relabel(&mut self, node: u32, label: Label) {
         let dual = self.dual(node);
@@ -205,7 +210,6 @@ impl Forest {
     }
 
     /// Lowers the dual of a top-level node.
-    #[allow(dead_code)]
     pub fn lower_dual(&mut self, node: u32, amount: i64) {
         let record = &mut self.nodes[node as usize];
         record.dual -= amount;

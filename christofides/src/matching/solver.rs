@@ -1,7 +1,9 @@
 //! Entry points: sparse graphs, and complete graphs by pricing.
 
 use super::blossoms::Blossom;
+use super::candidates::candidates;
 use super::forest::Forest;
+use super::pricing::violated;
 use super::quantise::Scale;
 use super::search::Exposed;
 use crate::error::Error;
@@ -96,11 +98,29 @@ impl Solver {
 
     pub(crate) fn complete_unchecked(&mut self, metric: &impl Metric) -> Result<Matching, Error> {
         let n = metric.len();
-        let mut edges = Vec::with_capacity(n * n.saturating_sub(1) / 2);
-        for i in 0..n {
-            edges.extend((i + 1..n).map(|j| (i, j, metric.distance(i, j))));
+        if n % 2 == 1 {
+            return Err(Error::OddVertexCount { n });
         }
-        self.sparse(n, &edges)
+        let candidates = candidates(metric);
+        let length = |&(u, v): &(u32, u32)| metric.distance(u as usize, v as usize);
+        let scale = Scale::new(candidates.iter().map(length).fold(0.0, f64::max));
+        self.edges.clear();
+        self.edges.extend(candidates.iter().map(|edge| (edge.0, edge.1, scale.weight(length(edge)))));
+        self.forest.graph.rebuild(n, &self.edges);
+        self.forest.start_greedily();
+        loop {
+            self.forest.run().map_err(|Exposed(exposed)| Error::NoPerfectMatching { exposed })?;
+            let violated = violated(&self.forest, metric, scale);
+            if violated.is_empty() {
+                break;
+            }
+            self.edges.extend(&violated);
+            self.forest.graph.rebuild(n, &self.edges);
+            self.forest.restart(&violated);
+        }
+        let mut matching = self.export(scale);
+        matching.weight = matching.edges().map(|(u, v)| metric.distance(u, v)).sum();
+        Ok(matching)
     }
 
     /// See [`sparse_min_weight_perfect_matching`].
@@ -129,11 +149,7 @@ impl Solver {
         self.forest.start_greedily();
         self.forest.run().map_err(|Exposed(exposed)| Error::NoPerfectMatching { exposed })?;
         let mut matching = self.export(scale);
-        matching.weight = edges
-            .iter()
-            .filter(|&&(u, v, _)| u < v && matching.mates[u] == v || v < u && matching.mates[v] == u)
-            .map(|edge| edge.2)
-            .sum();
+        matching.weight = matched_weight(&matching.mates, edges);
         Ok(matching)
     }
 
@@ -150,4 +166,14 @@ impl Solver {
             innermost,
         }
     }
+}
+
+/// The weight of a matching; of parallel edges the lightest counts.
+fn matched_weight(mates: &[usize], edges: &[(usize, usize, f64)]) -> f64 {
+    let mut lightest = vec![f64::INFINITY; mates.len()];
+    for &(u, v, weight) in edges.iter().filter(|edge| mates[edge.0] == edge.1) {
+        let end = u.min(v);
+        lightest[end] = lightest[end].min(weight);
+    }
+    mates.iter().enumerate().filter(|&(u, &v)| u < v).map(|(u, _)| lightest[u]).sum()
 }

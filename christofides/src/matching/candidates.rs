@@ -1,0 +1,68 @@
+//! The sparse graph that the search starts on.
+
+use crate::delaunay::delaunay_edges;
+use crate::kd_tree::KdTree;
+use crate::metric::{Geometry, Metric};
+
+/// Up to this size the complete graph is searched at once: cheaper than to price it.
+const COMPLETE_UP_TO: usize = 12;
+
+/// Neighbours of a point of the plane in addition to the Delaunay edges.
+const PLANAR_NEIGHBOURS: usize = 5;
+
+/// Neighbours where there is no Delaunay triangulation.
+const NEIGHBOURS: usize = 10;
+
+/// Edges among which most of an optimal matching is likely to be found, each once; they contain a perfect matching.
+///
+/// `O(n log n)` for points, `O(n^2)` for other metrics.
+pub(crate) fn candidates(metric: &impl Metric) -> Vec<(u32, u32)> {
+    let n = metric.len();
+    if n <= COMPLETE_UP_TO {
+        return (0..n as u32).flat_map(|i| (i + 1..n as u32).map(move |j| (i, j))).collect();
+    }
+    let mut edges = match metric.geometry() {
+        Geometry::Planar(points) => {
+            let mut edges = delaunay_edges(points);
+            add_neighbours(points, PLANAR_NEIGHBOURS, &mut edges);
+            edges
+        }
+        Geometry::Spatial(points) => {
+            let mut edges = Vec::new();
+            add_neighbours(points, NEIGHBOURS, &mut edges);
+            edges
+        }
+        Geometry::Abstract => abstract_neighbours(metric),
+    };
+    for edge in &mut edges {
+        *edge = (edge.0.min(edge.1), edge.0.max(edge.1));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+/// The nearest neighbours of each point, and a path through all of them, which contains a perfect matching.
+fn add_neighbours<const D: usize>(points: &[[f64; D]], k: usize, edges: &mut Vec<(u32, u32)>) {
+    let tree = KdTree::new(points);
+    let (mut found, mut stack) = (Vec::new(), Vec::new());
+    for (position, &index) in tree.order.iter().enumerate() {
+        tree.nearest(position, k, &mut found, &mut stack);
+        edges.extend(found.iter().map(|&(_, other)| (index, tree.order[other as usize])));
+    }
+    edges.extend(tree.order.windows(2).map(|pair| (pair[0], pair[1])));
+}
+
+fn abstract_neighbours(metric: &impl Metric) -> Vec<(u32, u32)> {
+    let n = metric.len();
+    let mut edges: Vec<(u32, u32)> = (1..n as u32).map(|j| (j - 1, j)).collect();
+    let mut row: Vec<(f64, u32)> = Vec::with_capacity(n);
+    for i in 0..n {
+        row.clear();
+        row.extend((0..n).filter(|&j| j != i).map(|j| (metric.distance(i, j), j as u32)));
+        let k = NEIGHBOURS.min(row.len());
+        row.select_nth_unstable_by(k - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        edges.extend(row[..k].iter().map(|&(_, j)| (i as u32, j)));
+    }
+    edges
+}
