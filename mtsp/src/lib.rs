@@ -1,1 +1,6 @@
-//! Many travelling salesmen: allocation, min-sum and min-max routes, tour splitting, improvement and certified bounds
+//! x
+#![forbid(unsafe_code)]
+#![allow(missing_docs)]
+mod check; mod error; mod improve; mod initial; mod objective; mod problem; mod solution;
+pub mod lower_bound;
+pub use check::*; pub use error::{Error, List}; pub use improve::*; pub use objective::*; pub use problem::{Problem, End}; pub use solution::*;

@@ -1,0 +1,54 @@
+//! What the search minimises: a sum of convex functions of the route lengths.
+
+use crate::objective::Objective;
+
+/// Energy of a route as a function of its length.
+///
+/// Min-sum: the length itself. Min-max: `(scale / p) (length / scale)^p` with `scale` the best makespan so far, whose slope is 1
+/// at the best makespan and small for short routes: minimising the sum flattens the longest routes first, yet
+/// every route feels some pull to be short, which plain min-max does not give. Over its limit a route pays [`OVER_LIMIT`] times the excess.
+#[derive(Clone)]
+pub(crate) struct Energy {
+    objective: Objective,
+    scale: f64,
+    limits: Vec<f64>,
+    limited: bool,
+}
+
+/// Slope of the energy beyond the limit.
+const OVER_LIMIT: f64 = 100.0;
+
+impl Energy {
+    pub fn new(objective: Objective, limits: Vec<f64>) -> Self {
+        let limited = limits.iter().any(|l| l.is_finite());
+        Self { objective, scale: 1.0, limits, limited }
+    }
+
+    pub fn set_scale(&mut self, scale: f64) {
+        self.scale = if scale > 0.0 { scale } else { 1.0 };
+    }
+
+    #[inline(always)]
+    pub fn of(&self, vehicle: usize, length: f64) -> f64 {
+        let mut energy = match self.objective {
+            Objective::Total => length,
+            Objective::Makespan => power(length / self.scale) * self.scale / *POWER,
+        };
+        if self.limited && length > self.limits[vehicle] {
+            energy += OVER_LIMIT * (length - self.limits[vehicle]);
+        }
+        energy
+    }
+}
+
+use std::sync::LazyLock;
+pub fn env(k:&str,d:f64)->f64{std::env::var(k).ok().map_or(d,|s|s.parse().unwrap())}
+static POWER: LazyLock<f64> = LazyLock::new(|| env("P",16.0));
+
+#[inline(always)]
+fn power(x: f64) -> f64 {
+    let x2 = x * x;
+    let x4 = x2 * x2;
+    let x8 = x4 * x4;
+    let x16 = x8*x8; if *POWER == 16.0 { x16 } else if *POWER==32.0 {x16*x16} else if *POWER==8.0 {x8} else if *POWER==64.0 {let y=x16*x16; y*y} else { x.powf(*POWER) }
+}
