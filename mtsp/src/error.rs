@@ -137,6 +137,18 @@ pub enum Error {
     /// The operation is for closed routes from one depot without limits and forbidden pairs.
     #[error("this needs closed routes from one depot, without limits or forbidden pairs")]
     NotTheBasicVariant,
+    /// The search found no routes within the limits; there may be some all the same.
+    #[error("no routes within the limits were found; limits longer by {excess} each would suffice")]
+    LimitsNotMet {
+        /// The greatest excess of a route over its limit in the best routes found: limits raised by this are met.
+        excess: f64,
+    },
+    /// A tour could not be made.
+    #[error("the tour could not be made")]
+    Tour(#[from] christofides::Error),
+    /// Targets could not be clustered.
+    #[error("the targets could not be clustered")]
+    Clusters(#[from] cluster::Error),
 }
 
 /// The lists of [`Error::WrongLength`].

@@ -65,8 +65,7 @@ impl<'a, M: Metric> Problem<'a, M> {
         let service = vec![0.0; metric.len()];
         let (starts, ends) = (vec![0; vehicles], vec![End::At(0); vehicles]);
         let limits = vec![f64::INFINITY; vehicles];
-        let mut problem =
-            Self { metric, service, starts, ends, limits, targets: vec![], forbidden: vec![] };
+        let mut problem = Self { metric, service, starts, ends, limits, targets: vec![], forbidden: vec![] };
         problem.find_targets();
         for &target in &problem.targets {
             problem.leg(0, target)?;
@@ -244,7 +243,8 @@ impl<'a, M: Metric> Problem<'a, M> {
     #[must_use]
     pub fn closed_depot(&self) -> Option<usize> {
         let depot = self.starts[0];
-        let closed = self.starts.iter().all(|&s| s == depot) && self.ends.iter().all(|&e| e == End::At(depot));
+        let closed =
+            self.starts.iter().all(|&s| s == depot) && self.ends.iter().all(|&e| e == End::At(depot));
         closed.then_some(depot)
     }
 
@@ -255,6 +255,19 @@ impl<'a, M: Metric> Problem<'a, M> {
             && self.ends.iter().all(|&e| e == self.ends[0])
             && self.limits.iter().all(|&l| l == self.limits[0])
             && self.forbidden.iter().all(Vec::is_empty)
+    }
+
+    /// The one depot, if routes are closed, limits infinite and no pairs forbidden.
+    pub(crate) fn basic_depot(&self) -> Option<usize> {
+        self.closed_depot().filter(|_| self.is_homogeneous() && !self.has_limits())
+    }
+
+    /// The same problem without limits and forbidden pairs.
+    pub(crate) fn without_restrictions(&self) -> Self {
+        let mut free = self.clone();
+        free.limits.fill(f64::INFINITY);
+        free.forbidden.clear();
+        free
     }
 
     /// Whether some vehicle has a finite limit.

@@ -16,7 +16,8 @@ pub(crate) type Value = (f64, f64, f64);
 const SAME: f64 = 1e-12;
 
 /// How hot the annealing starts and ends, in mean arc costs.
-use super::energy::env;
+const HOT: f64 = 0.5;
+const COLD: f64 = 0.001;
 
 pub(crate) struct Annealing<'a, A: Arcs> {
     pub arcs: &'a A,
@@ -63,7 +64,7 @@ impl<A: Arcs> Annealing<'_, A> {
         let mut best_value = self.value(state);
         energy.set_scale(state.makespan());
         let mut current = self.energy(state, &energy);
-        let size = RuinSize { mean: env("MEAN",10.0), longest: env("LONG",10.0) }; let (HOT,COLD)=(env("HOT",0.3),env("COLD",0.003));
+        let size = RuinSize { mean: 10.0, longest: 10.0 };
         let arc = state.total() / (state.n + state.length.len()) as f64;
         let horizon = options.horizon.unwrap_or(options.iterations).max(1);
         let cooling = (COLD / HOT).powf(256.0 / horizon as f64);

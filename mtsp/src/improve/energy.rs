@@ -32,7 +32,7 @@ impl Energy {
     pub fn of(&self, vehicle: usize, length: f64) -> f64 {
         let mut energy = match self.objective {
             Objective::Total => length,
-            Objective::Makespan => power(length / self.scale) * self.scale / *POWER,
+            Objective::Makespan => power(length / self.scale) * self.scale / POWER,
         };
         if self.limited && length > self.limits[vehicle] {
             energy += OVER_LIMIT * (length - self.limits[vehicle]);
@@ -41,14 +41,13 @@ impl Energy {
     }
 }
 
-use std::sync::LazyLock;
-pub fn env(k:&str,d:f64)->f64{std::env::var(k).ok().map_or(d,|s|s.parse().unwrap())}
-static POWER: LazyLock<f64> = LazyLock::new(|| env("P",16.0));
+const POWER: f64 = 64.0;
 
 #[inline(always)]
 fn power(x: f64) -> f64 {
     let x2 = x * x;
     let x4 = x2 * x2;
     let x8 = x4 * x4;
-    let x16 = x8*x8; if *POWER == 16.0 { x16 } else if *POWER==32.0 {x16*x16} else if *POWER==8.0 {x8} else if *POWER==64.0 {let y=x16*x16; y*y} else { x.powf(*POWER) }
+    let x32 = (x8 * x8) * (x8 * x8);
+    x32 * x32
 }

@@ -73,16 +73,13 @@ impl Places<'_> {
                 continue;
             }
             for after in [neighbour, state.prev[neighbour] as usize] {
-                if *until_blink == 0 {
-                    *until_blink = blink_distance(random);
-                    continue;
+                if !blinks(until_blink, random) {
+                    consider(state, arcs, energy, target, after, &mut best);
                 }
-                *until_blink -= 1;
-                consider(state, arcs, energy, target, after, &mut best);
             }
         }
         for vehicle in (0..m).filter(|&v| state.count[v] == 0) {
-            if self.allows(target, vehicle, m) {
+            if self.allows(target, vehicle, m) && !blinks(until_blink, random) {
                 consider(state, arcs, energy, target, state.n + vehicle, &mut best);
                 if self.alike {
                     break;
@@ -123,14 +120,7 @@ impl Places<'_> {
 }
 
 #[inline(always)]
-fn consider(
-    state: &State,
-    arcs: &impl Arcs,
-    energy: &Energy,
-    target: usize,
-    after: usize,
-    best: &mut Best,
-) {
+fn consider(state: &State, arcs: &impl Arcs, energy: &Energy, target: usize, after: usize, best: &mut Best) {
     let before = state.next[after] as usize;
     let vehicle = state.route[after] as usize;
     let added = arcs.arc(after, target) + arcs.arc(target, before) - arcs.arc(after, before);
@@ -139,6 +129,17 @@ fn consider(
     if cost < best.cost {
         *best = Best { cost, after };
     }
+}
+
+/// Whether this place is overlooked.
+#[inline(always)]
+fn blinks(until_blink: &mut u32, random: &mut Random) -> bool {
+    if *until_blink == 0 {
+        *until_blink = blink_distance(random);
+        return true;
+    }
+    *until_blink -= 1;
+    false
 }
 
 /// Places until the next one overlooked: geometric.

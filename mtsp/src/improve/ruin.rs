@@ -28,6 +28,11 @@ pub(crate) struct Ruin {
 const SPLIT: f64 = 0.5;
 const STOP_GROWING: f64 = 0.01;
 
+/// Probability of taking a whole route out, and the longest route (in mean sizes) to which that happens: strings alone
+/// cannot hand a route over to another vehicle.
+const WHOLE: f64 = 0.02;
+const WHOLE_UP_TO: f64 = 4.0;
+
 impl Ruin {
     pub fn new(vehicles: usize) -> Self {
         Self { touched: vec![0; vehicles], round: 0, removed: Vec::new() }
@@ -50,6 +55,11 @@ impl Ruin {
         let most_strings = (4.0 * size.mean / (1.0 + longest) - 1.0).max(0.0);
         let strings = (random.unit() * most_strings + 1.0) as usize;
         let seed = random.below(state.n);
+        let vehicle = state.route[seed] as usize;
+        if f64::from(state.count[vehicle]) <= WHOLE_UP_TO * size.mean && random.unit() < WHOLE {
+            self.take_route(state, arcs, vehicle);
+            return;
+        }
         let mut done = 0;
         for target in std::iter::once(seed).chain(near.of(seed).iter().map(|&t| t as usize)) {
             let vehicle = state.route[target];
@@ -64,6 +74,15 @@ impl Ruin {
             if done >= strings {
                 break;
             }
+        }
+    }
+
+    fn take_route(&mut self, state: &mut State, arcs: &impl Arcs, vehicle: usize) {
+        let end = state.n + vehicle;
+        while state.count[vehicle] > 0 {
+            let first = state.next[end] as usize;
+            state.remove(first, arcs);
+            self.removed.push(first as u32);
         }
     }
 

@@ -55,8 +55,7 @@ pub fn quick<M: Metric>(problem: &Problem<'_, M>) -> LowerBounds {
 pub fn with_iterations<M: Metric>(problem: &Problem<'_, M>, iterations: usize) -> LowerBounds {
     let total_cost = forest(problem, NumRoutes::AtMost, iterations);
     let exact = problem.is_homogeneous() && problem.targets().len() >= problem.vehicles();
-    let all_used =
-        if exact { forest(problem, NumRoutes::Exactly, iterations) } else { total_cost };
+    let all_used = if exact { forest(problem, NumRoutes::Exactly, iterations) } else { total_cost };
     let mut makespan = (all_used / problem.vehicles() as f64).max(radius(problem));
     if problem.is_homogeneous() {
         makespan = makespan.max(pigeonhole(problem));
