@@ -1,1 +1,37 @@
-//! Quadcopter dynamics: loiter speed and states, differentiable models, integration, control and simulation
+//! Quadcopter dynamics: parameters, loiter speed and loiter states, differentiable models and integration.
+//!
+//! # Entry points
+//!
+//! | question | answer |
+//! |---|---|
+//! | what is the vehicle? | [`VehicleParameters`], checked into a [`Vehicle`] |
+//! | how fast can it circle here, and what limits it? | [`Loiter::new`] from a [`LoiterSpec`], [`Limit`] |
+//! | where is it on the circle, in every model's state? | [`Loiter::state`], [`Motion`] |
+//! | how does it move? | [`PointMass`], [`JerkLimited`], [`ThrustRate`], [`RigidBody`] |
+//! | and after a while? | [`rk4`] |
+
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod error;
+pub mod frames;
+mod loiter;
+mod mixer;
+pub mod models;
+mod motion;
+mod presets;
+mod rk4;
+mod shaping;
+mod vehicle;
+
+pub use nalgebra;
+
+pub use error::{Error, Field, Requirement};
+pub use frames::{Direction, GRAVITY, Heading};
+pub use loiter::{CameraLimit, Limit, Loiter, LoiterSpec, LoiterYaw, loiter_speed};
+pub use mixer::Mixer;
+pub use models::{JerkLimited, PointMass, RigidBody, ThrustRate};
+pub use motion::Motion;
+pub use rk4::{rk4, rk4_step};
+pub use shaping::ShapingLimits;
+pub use vehicle::{Rotor, Spin, Vehicle, VehicleParameters};

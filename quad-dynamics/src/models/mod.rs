@@ -1,0 +1,100 @@
+//! The models of motion, each with one generic `derivative`.
+//!
+//! | model | state | control |
+//! |---|---|---|
+//! | [`PointMass`] | p, v (6) | thrust force (3), N, world |
+//! | [`JerkLimited`] | p, v, a (9) | jerk (3), m/s^3, world |
+//! | [`ThrustRate`] | p, v, q (10) | collective thrust, N; body rates (3), rad/s |
+//! | [`RigidBody`] | p, v, q, w (13) | rotor thrusts (4), N |
+//!
+//! Positions and velocities are in the world frame, `q = (w, x, y, z)` is body to world, `w` are body rates
+//! ([`frames`](crate::frames)). Forces are those of one equation:
+//! `m a = T z_b - m g e_z - (c_d/2) |v_air| v_air`, `v_air = v - wind`.
+//!
+//! `derivative` is generic over the scalar, so that dual numbers give its derivatives.
+
+mod jerk_limited;
+mod point_mass;
+mod rigid_body;
+mod thrust_rate;
+
+pub use jerk_limited::JerkLimited;
+pub use point_mass::PointMass;
+pub use rigid_body::RigidBody;
+pub use thrust_rate::ThrustRate;
+
+use nalgebra::{RealField, SVector, Vector3};
+
+use crate::frames::GRAVITY;
+use crate::vehicle::Vehicle;
+
+/// What the translational models share: gravity, drag and steady wind, per unit of mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Air {
+    /// 1/m, 1/kg.
+    pub inverse_mass: f64,
+    /// `c_d/(2 m)`, 1/m.
+    pub drag_per_mass: f64,
+    /// Steady wind, m/s, world.
+    pub wind: Vector3<f64>,
+}
+
+impl Air {
+    pub fn new(vehicle: &Vehicle) -> Self {
+        let inverse_mass = vehicle.mass().recip();
+        Self {
+            inverse_mass,
+            drag_per_mass: 0.5 * vehicle.drag_coefficient() * inverse_mass,
+            wind: Vector3::zeros(),
+        }
+    }
+
+    /// Acceleration by gravity and drag at a velocity, m/s^2.
+    #[inline]
+    pub fn acceleration<T: RealField + Copy>(&self, velocity: [T; 3]) -> [T; 3] {
+        let wind = &self.wind;
+        let air = [0, 1, 2].map(|i| velocity[i] - nalgebra::convert(wind[i]));
+        let squared = air[0] * air[0] + air[1] * air[1] + air[2] * air[2];
+        // |v| v is differentiable at 0, its factor |v| is not: a dual number would give 0/0 there.
+        let speed = if squared > T::zero() { squared.sqrt() } else { T::zero() };
+        let factor = speed * nalgebra::convert(-self.drag_per_mass);
+        [air[0] * factor, air[1] * factor, air[2] * factor - nalgebra::convert(GRAVITY)]
+    }
+
+    /// Time derivative of the drag acceleration `-k |v| v` when the velocity changes at `acceleration`, m/s^3.
+    pub fn drag_rate(&self, velocity: &Vector3<f64>, acceleration: &Vector3<f64>) -> Vector3<f64> {
+        let air = velocity - self.wind;
+        let speed = air.norm();
+        let along = if speed > 0.0 { air * (air.dot(acceleration) / speed) } else { Vector3::zeros() };
+        (acceleration * speed + along) * -self.drag_per_mass
+    }
+}
+
+/// Unit thrust direction (third column of the rotation), for a quaternion of any norm but zero.
+///
+/// Divided by |q|^2, so that a norm that drifts creates no thrust.
+#[inline]
+pub(crate) fn thrust_direction<T: RealField + Copy>(q: [T; 4]) -> [T; 3] {
+    let [w, x, y, z] = q;
+    let scale = (w * w + x * x + y * y + z * z).recip();
+    let twice = scale + scale;
+    [twice * (x * z + w * y), twice * (y * z - w * x), scale * (w * w - x * x - y * y + z * z)]
+}
+
+/// `q' = q (0, rates) / 2`.
+#[inline]
+pub(crate) fn quaternion_rate<T: RealField + Copy>(q: [T; 4], rates: [T; 3]) -> [T; 4] {
+    let half: T = nalgebra::convert(0.5);
+    let [w, x, y, z] = q;
+    let [p, q, r] = rates.map(|rate| rate * half);
+    [-(x * p + y * q + z * r), w * p + y * r - z * q, w * q + z * p - x * r, w * r + x * q - y * p]
+}
+
+/// `N` entries of a vector from `start` on.
+#[inline]
+pub(crate) fn entries<T: RealField + Copy, const N: usize, const S: usize>(
+    vector: &SVector<T, S>,
+    start: usize,
+) -> [T; N] {
+    std::array::from_fn(|i| vector[start + i])
+}
