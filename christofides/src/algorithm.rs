@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::euler::euler_circuit;
 use crate::exact::{exact_path, exact_tour};
-use crate::improve::{improve, improve_path};
+use crate::improve::{chained_improve, chained_improve_path};
 use crate::lower_bound::held_karp;
 use crate::matching::Solver;
 use crate::metric::Metric;
@@ -66,6 +66,11 @@ impl Options {
 /// promise the triangle inequality and breaks it.
 pub fn christofides(metric: &impl Metric) -> Result<Tour, Error> {
     validate_promised(metric)?;
+    from_tree_and_matching(metric)
+}
+
+/// The steps of the algorithm; the bound holds only in a metric, a tour comes out of any symmetric distance.
+fn from_tree_and_matching(metric: &impl Metric) -> Result<Tour, Error> {
     let n = metric.len();
     if n < 4 {
         return Ok(Tour::measured(metric, (0..n).collect()));
@@ -114,17 +119,13 @@ pub fn solve(
     options: &Options,
     should_stop: &mut dyn FnMut() -> bool,
 ) -> Result<Tour, Error> {
-    let _ = should_stop;
     validate_finite(metric)?;
     let n = metric.len();
     if n <= options.exact_up_to.min(16) {
         return exact_tour(metric);
     }
-    let start = match christofides(metric) {
-        Err(Error::TriangleInequality { .. }) => Tour::measured(metric, (0..n).collect()),
-        other => other?,
-    };
-    let tour = improve(metric, start)?;
+    let start = from_tree_and_matching(metric)?;
+    let tour = chained_improve(metric, start, options.kicks, options.seed, should_stop)?;
     if options.ascent_iterations == 0 {
         return Ok(tour);
     }
@@ -142,7 +143,6 @@ pub fn solve_path(
     options: &Options,
     should_stop: &mut dyn FnMut() -> bool,
 ) -> Result<Path, Error> {
-    let _ = should_stop;
     ends.validate(metric.len())?;
     validate_finite(metric)?;
     let n = metric.len();
@@ -159,5 +159,6 @@ pub fn solve_path(
             order.push(end);
         }
     }
-    improve_path(metric, Path::new(metric, order)?, ends)
+    let path = Path::new(metric, order)?;
+    chained_improve_path(metric, path, ends, options.kicks, options.seed, should_stop)
 }

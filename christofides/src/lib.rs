@@ -25,7 +25,7 @@ pub use algorithm::{Options, christofides, solve, solve_path};
 pub use error::Error;
 pub use euler::euler_circuit;
 pub use exact::{exact_path, exact_tour};
-pub use improve::{improve, improve_path};
+pub use improve::{chained_improve, chained_improve_path, improve, improve_path};
 pub use lower_bound::{LowerBound, held_karp};
 pub use matching::{Matching, min_weight_perfect_matching};
 pub use matrix::{FromFn, Matrix};

@@ -1,6 +1,6 @@
 //! Small instances solved to proof.
 
-mod subsets;
+pub(crate) mod subsets;
 
 use crate::error::Error;
 use crate::metric::Metric;

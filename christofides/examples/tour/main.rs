@@ -1,0 +1,93 @@
+//! A short tour with a proven bound, for TSPLIB and CSV files.
+//!
+//! `cargo run --release -p christofides --example tour -- FILE [--seconds S] [--seed K] [--tsplib-rounding] [--json]`
+
+mod instance;
+
+use christofides::{Tour, chained_improve, christofides, held_karp};
+use instance::Instance;
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+/// Iterations of the ascent: more do not raise the bound by 1e-4.
+const ASCENT: usize = 1000;
+
+struct Arguments {
+    file: String,
+    seconds: f64,
+    seed: u64,
+    rounding: bool,
+    json: bool,
+}
+
+struct Report {
+    christofides: f64,
+    tour: Tour,
+    lower_bound: f64,
+    seconds: [f64; 3],
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = parse(std::env::args().skip(1))?;
+    let instance = Instance::read(&std::fs::read_to_string(&arguments.file)?)?;
+    let report = run(&instance, &arguments)?;
+    let (length, bound) = (report.tour.cost(), report.lower_bound);
+    let gap = if length <= bound { 0.0 } else { length / bound - 1.0 };
+    if arguments.json {
+        let seconds: f64 = report.seconds.iter().sum();
+        let (n, christofides) = (instance.len(), report.christofides);
+        println!(
+            r#"{{"n": {n}, "christofides": {christofides}, "length": {length}, "lower_bound": {bound}, "gap": {gap}, "seconds": {seconds}, "tour": {:?}}}"#,
+            report.tour.order()
+        );
+    } else {
+        let [first, second, third] = report.seconds;
+        println!("vertices      {}", instance.len());
+        println!("christofides  {:<16} in {first:.6} s", report.christofides);
+        println!("improved      {length:<16} in {second:.6} s");
+        println!("lower bound   {bound:<16.6} in {third:.6} s");
+        println!("gap           {:.4} %", 100.0 * gap);
+    }
+    Ok(())
+}
+
+fn run(instance: &Instance, arguments: &Arguments) -> Result<Report, Box<dyn Error>> {
+    let exact = instance.metric(false);
+    let metric = instance.metric(arguments.rounding);
+    let start = Instant::now();
+    let first = christofides(&exact)?;
+    let first_seconds = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let deadline = Duration::from_secs_f64(arguments.seconds);
+    let first = Tour::new(&metric, first.into_order())?;
+    let christofides = first.cost();
+    let tour =
+        chained_improve(&metric, first, usize::MAX, arguments.seed, &mut || start.elapsed() >= deadline)?;
+    let second_seconds = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let bound = held_karp(&metric, ASCENT)?.value();
+    // Rounded distances add up to a whole number.
+    let lower_bound = if arguments.rounding { (bound - 1e-6).ceil() } else { bound };
+    let seconds = [first_seconds, second_seconds, start.elapsed().as_secs_f64()];
+    Ok(Report { christofides, tour, lower_bound, seconds })
+}
+
+fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, Box<dyn Error>> {
+    let mut arguments =
+        Arguments { file: String::new(), seconds: 1.0, seed: 1, rounding: false, json: false };
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
+        match word.as_str() {
+            "--seconds" => arguments.seconds = value()?.parse()?,
+            "--seed" => arguments.seed = value()?.parse()?,
+            "--tsplib-rounding" => arguments.rounding = true,
+            "--json" => arguments.json = true,
+            _ => arguments.file = word,
+        }
+    }
+    let is_usable = !arguments.file.is_empty() && Duration::try_from_secs_f64(arguments.seconds).is_ok();
+    let usage = "usage: tour FILE [--seconds S] [--seed K] [--tsplib-rounding] [--json]";
+    if is_usable { Ok(arguments) } else { Err(usage.into()) }
+}
