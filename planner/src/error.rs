@@ -19,6 +19,13 @@ pub enum Error {
         #[from]
         source: mtsp::Error,
     },
+    /// The targets could not be clustered.
+    #[error("no clusters: {source}")]
+    Clustering {
+        /// What the clustering says.
+        #[from]
+        source: cluster::Error,
+    },
     /// No candidate of a leg could be solved.
     #[error(
         "leg {} of vehicle {} to {} could not be solved: none of {} candidate entries converged (smallest residual {:.1e})",

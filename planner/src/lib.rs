@@ -1,1 +1,83 @@
-//! Mission planning for teams of quadcopters that fly one full circle around each of many targets
+//! Plans for teams of quadcopters that fly one full circle around each of many targets.
+//!
+//! A [`Mission`] says what is asked: targets, fleet, limits. [`plan()`] answers with a [`Plan`]: who circles which target in
+//! which order, how fast, where each circle is entered and in which direction, and how to fly from circle to circle in the
+//! least time that the vehicle's dynamics allow. The method is that of Gao, Mandal, Bhattacharya (2020), step by step:
+//!
+//! | step | what happens | file |
+//! |---|---|---|
+//! | check | all that is wrong with the mission, at once | `check.rs` |
+//! | circles | close targets merged; the fastest loiter within the limits | `circles.rs` |
+//! | routes | k-means and Christofides, or optimised routes | `allocation.rs` |
+//! | entries | sampled angles in both directions, bounded from below | `entry.rs`, `bound.rs` |
+//! | legs | the paper's Algorithm 1: the fastest transition over all entries | `legs.rs`, `transition/` |
+//! | certificate | makespan and total beside lower bounds | `certificate.rs` |
+//! | verification | all controls integrated again, independently | `verify.rs` |
+//!
+//! # Example
+//! ```
+//! use planner::quad_dynamics::{Vehicle, VehicleParameters};
+//! use planner::{Entries, Mission, Options, Target, Tolerances, plan};
+//!
+//! let targets = vec![Target::at([15.0, 5.0]), Target::at([4.0, 18.0])];
+//! let vehicle = Vehicle::new(VehicleParameters::survey_450())?;
+//! let mut mission = Mission::new(vehicle, 2, targets);
+//! mission.transition.entries = Entries::Sampled(4);
+//!
+//! let plan = plan(&mission, &Options::default())?;
+//! assert!(plan.certificate.makespan >= plan.certificate.makespan_lower_bound);
+//! assert!(plan.verify(&mission, &Tolerances::default()).passed());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Guarantees
+//! - Every leg in a plan was solved; a leg that could not be is an [`Error::Leg`] with all residuals.
+//! - A candidate entry is discarded only on a proven bound.
+//! - The certificate's lower bounds hold over every allocation, order, entry, direction and admissible motion.
+//! - The same mission and seed give the same plan to the bit, with or without the feature `rayon`, on any number of threads.
+//!
+//! What is *not* guaranteed: that a transition is the global optimum of its problem (the solver finds local ones from several
+//! guesses), or that clustering first gives routes within a factor of the best (it has none; see [`Certificate`]).
+//!
+//! # Features
+//! `rayon`: routes and candidate entries are solved side by side.
+
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod allocation;
+mod bound;
+mod certificate;
+mod check;
+mod circles;
+mod entry;
+mod error;
+mod legs;
+mod mission;
+mod options;
+mod plan;
+mod planning;
+mod sample;
+mod separation;
+mod transition;
+mod verify;
+
+pub use christofides;
+pub use cluster;
+pub use mtsp;
+pub use quad_dynamics;
+pub use traj_opt;
+
+pub use error::{Error, Problem};
+pub use mission::{
+    Entries, Fleet, LoiterSettings, Mission, Model, Objective, Pipeline, Target, Transcription,
+    TransitionSettings,
+};
+pub use options::{Options, Progress};
+pub use plan::{
+    Approach, Candidate, Certificate, Circle, Entry, Leg, Loiter, Miss, Outcome, Phase, Plan, Sample,
+    SolverStatus, Transition, VehiclePlan, Warning,
+};
+pub use planning::plan;
+pub use quad_dynamics::{Direction, LoiterYaw, ShapingLimits};
+pub use verify::{Failure, LegCheck, Tolerances, Verification};

@@ -3,7 +3,7 @@
 //! Everything is SI with angles in radians, in the local east-north-up frame (x east, y north, z up, heights above the
 //! ground). Files, degrees and geographic coordinates belong to the caller.
 
-use quad_dynamics::Vehicle;
+use quad_dynamics::{LoiterYaw, ShapingLimits, Vehicle};
 
 /// A mission: who flies where, and within which limits.
 ///
@@ -80,16 +80,6 @@ impl Default for LoiterSettings {
     }
 }
 
-/// Where the nose points while circling.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum LoiterYaw {
-    /// Along the track, as in the paper.
-    #[default]
-    AlongTrack,
-    /// At the target.
-    AtTarget,
-}
-
 /// How vehicles fly between circles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransitionSettings {
@@ -107,7 +97,7 @@ pub struct TransitionSettings {
     pub safe_distance: f64,
     /// Least and greatest height above the ground on the way (m).
     pub heights: [f64; 2],
-    /// Limits of the jerk-limited model; the others ignore them.
+    /// Limits of the jerk-limited model; the others ignore them. Default: ArduCopter's.
     pub shaping: ShapingLimits,
 }
 
@@ -121,25 +111,8 @@ impl Default for TransitionSettings {
             thrust_budget: 0.9,
             safe_distance: 1.5,
             heights: [0.5, 30.0],
-            shaping: ShapingLimits::default(),
+            shaping: ShapingLimits::arducopter(),
         }
-    }
-}
-
-/// The shaping limits of an autopilot, for [`Model::JerkLimited`]. Defaults: ArduCopter's in guided flight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShapingLimits {
-    /// Greatest speed (m/s).
-    pub speed: f64,
-    /// Greatest acceleration (m/s^2).
-    pub acceleration: f64,
-    /// Greatest jerk (m/s^3).
-    pub jerk: f64,
-}
-
-impl Default for ShapingLimits {
-    fn default() -> Self {
-        Self { speed: 10.0, acceleration: 2.5, jerk: 5.0 }
     }
 }
 

@@ -3,7 +3,7 @@
 //! Vehicles, targets and legs are numbered from 0 here; files and tables number them from 1.
 
 use crate::mission::Model;
-use quad_dynamics::loiter::Limit;
+use quad_dynamics::{Direction, Limit};
 
 /// A complete plan.
 #[derive(Debug, Clone)]
@@ -36,8 +36,8 @@ pub struct Circle {
     pub sweep: f64,
     /// Speed along the circle (m/s).
     pub speed: f64,
-    /// What the speed is limited by.
-    pub limit: Limit,
+    /// What keeps the speed from being greater.
+    pub limit: Option<Limit>,
     /// Time for the sweep (s).
     pub duration: f64,
 }
@@ -89,8 +89,6 @@ pub struct Entry {
     pub direction: Direction,
 }
 
-pub use quad_dynamics::loiter::Direction;
-
 /// A flight in minimum time, as the solver found it and as an independent integration sees it.
 #[derive(Debug, Clone)]
 pub struct Transition {
@@ -104,8 +102,11 @@ pub struct Transition {
     pub knots: Vec<f64>,
     /// The state at every knot, in the model's order and SI units.
     pub states: Vec<Vec<f64>>,
-    /// The control of every segment (piecewise constant), or at every knot (collocation).
+    /// [`control_nodes`](Self::control_nodes) controls for every segment in turn, in the model's order and SI units.
     pub controls: Vec<Vec<f64>>,
+    /// Equally spaced nodes of the control in a segment, both ends included: 1 is a constant control, 2 a linear one, 3 a
+    /// quadratic one.
+    pub control_nodes: usize,
     /// How the solver ended.
     pub status: SolverStatus,
     /// Iterations of the solver.
@@ -322,6 +323,9 @@ impl VehiclePlan {
     /// Length of the whole flight (m).
     #[must_use]
     pub fn length(&self) -> f64 {
-        self.legs.iter().map(|leg| leg.transition.length + leg.loiter.map_or(0.0, |loiter| loiter.length)).sum()
+        self.legs
+            .iter()
+            .map(|leg| leg.transition.length + leg.loiter.map_or(0.0, |loiter| loiter.length))
+            .sum()
     }
 }

@@ -1,6 +1,10 @@
 //! A check of a finished plan that does not trust the solver.
 
-use crate::plan::Miss;
+use crate::circles::{Orbit, orbits};
+use crate::mission::Mission;
+use crate::plan::{Certificate, Leg, Miss, Plan};
+use crate::transition::{Pilot, hover, miss};
+use quad_dynamics::Motion;
 
 /// Tolerances of a verification. Defaults: 5 cm, 5 cm/s and 1 degree for the integrated miss.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,5 +123,113 @@ impl Verification {
             velocity: worst.velocity.max(leg.miss.velocity),
             attitude: worst.attitude.max(leg.miss.attitude),
         })
+    }
+}
+
+impl Plan {
+    /// Checks the plan without trusting the solver that made it.
+    ///
+    /// Every transition's controls are integrated again by the adaptive integrator, from the state in which the vehicle
+    /// really is: the loiter state (or hover) computed afresh from mission and entry. The end is compared with the next such
+    /// state; bounds, heights and safe distances are looked at between knots too; every target must be circled exactly once.
+    #[must_use]
+    pub fn verify(&self, mission: &Mission, tolerances: &Tolerances) -> Verification {
+        let mut verification = Verification::default();
+        let orbits = orbits(mission).unwrap_or_default();
+        let pilot = Pilot::new(mission, &orbits);
+        for (vehicle, planned) in self.vehicles.iter().enumerate() {
+            let [x, y, _] = planned.pad;
+            let first = planned.route.first().and_then(|&circle| orbits.get(circle));
+            let pad = hover(mission, planned.pad, first.map_or([x + 1.0, y], |orbit| orbit.circle.centre));
+            let mut here = pad;
+            let mut time = planned.legs.first().map_or(0.0, |leg| leg.start_time);
+            for (index, leg) in planned.legs.iter().enumerate() {
+                let check = check_leg(&pilot, &orbits, leg, &here, &pad).map(|seen| LegCheck {
+                    vehicle,
+                    leg: index,
+                    ..seen
+                });
+                let joined = (leg.start_time - time).abs() < 1e-9
+                    && leg.loiter.map(|loiter| loiter.circle) == planned.route.get(index).copied();
+                verification.judge(vehicle, index, check, joined, tolerances);
+                let left = leg.loiter.and_then(|loiter| Some(orbits.get(loiter.circle)?.exit(loiter.entry)));
+                here = left.unwrap_or(pad);
+                time = leg.end_time();
+            }
+            let complete = if planned.route.is_empty() { 0 } else { planned.route.len() + 1 };
+            if planned.legs.len() != complete {
+                verification.failures.push(Failure::Joint { vehicle, leg: planned.legs.len() });
+            }
+        }
+        verification.count_targets(self, mission);
+        let Certificate { makespan, makespan_lower_bound, total, total_lower_bound } = self.certificate;
+        for (value, lower_bound) in [(makespan, makespan_lower_bound), (total, total_lower_bound)] {
+            if value < lower_bound {
+                verification.failures.push(Failure::Certificate { value, lower_bound });
+            }
+        }
+        verification
+    }
+}
+
+/// What an independent integration of one leg's controls shows; `None` if its arrays make no trajectory.
+fn check_leg(pilot: &Pilot, orbits: &[Orbit], leg: &Leg, start: &Motion, pad: &Motion) -> Option<LegCheck> {
+    let goal = match leg.loiter {
+        Some(loiter) => orbits.get(loiter.circle)?.at(loiter.entry),
+        None => *pad,
+    };
+    let seen = pilot.examine(&leg.transition, start)?;
+    Some(LegCheck {
+        vehicle: 0,
+        leg: 0,
+        miss: miss(leg.transition.model, &seen.end, &goal, leg.loiter.is_none()),
+        bound_violation: seen.limit_violation.max(seen.height_violation),
+        clearance: seen.clearance,
+    })
+}
+
+impl Verification {
+    fn judge(
+        &mut self,
+        vehicle: usize,
+        leg: usize,
+        check: Option<LegCheck>,
+        joined: bool,
+        tolerances: &Tolerances,
+    ) {
+        let Some(check) = check.filter(|_| joined) else {
+            self.failures.push(Failure::Joint { vehicle, leg });
+            return;
+        };
+        let LegCheck { miss, bound_violation, clearance, .. } = check;
+        self.legs.push(check);
+        let allowed = &tolerances.miss;
+        // Written so that NaN fails.
+        let hit = miss.position <= allowed.position
+            && miss.velocity <= allowed.velocity
+            && miss.attitude <= allowed.attitude;
+        if !hit {
+            self.failures.push(Failure::Miss { vehicle, leg, miss });
+        }
+        if !(bound_violation <= tolerances.bound) {
+            self.failures.push(Failure::Bound { vehicle, leg, violation: bound_violation });
+        }
+        if !(clearance >= -tolerances.bound) {
+            self.failures.push(Failure::Clearance { vehicle, leg, clearance });
+        }
+    }
+
+    fn count_targets(&mut self, plan: &Plan, mission: &Mission) {
+        let mut times = vec![0; mission.targets.len()];
+        let flown = plan.vehicles.iter().flat_map(|vehicle| &vehicle.legs).filter_map(|leg| leg.loiter);
+        for circle in flown.filter_map(|loiter| plan.circles.get(loiter.circle)) {
+            for &member in &circle.members {
+                if let Some(count) = times.get_mut(member) {
+                    *count += 1;
+                }
+            }
+        }
+        let wrong = times.into_iter().enumerate().filter(|&(_, times)| times != 1);
+        self.failures.extend(wrong.map(|(target, times)| Failure::Coverage { target, times }));
     }
 }

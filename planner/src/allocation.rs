@@ -1,0 +1,105 @@
+//! Who circles what, and in which order (the paper's Algorithm 2, or routes optimised for the objective).
+
+use crate::bound::Envelope;
+use crate::circles::Orbit;
+use crate::error::Error;
+use crate::mission::{Mission, Objective, Pipeline};
+use christofides::Metric;
+use mtsp::{Problem, assign};
+
+/// Restarts of k-means, scikit-learn's long-standing default.
+const RESTARTS: usize = 10;
+
+/// The legs between depot (node 0) and circles (node `i + 1` for circle `i`).
+struct Legs<'a> {
+    nodes: &'a [[f64; 2]],
+    /// How long or costly a leg of a given length is: increasing, concave and 0 at 0, so that a metric stays a metric.
+    cost: &'a dyn Fn(f64) -> f64,
+}
+
+impl Metric for Legs<'_> {
+    fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    fn distance(&self, i: usize, j: usize) -> f64 {
+        let ([ax, ay], [bx, by]) = (self.nodes[i], self.nodes[j]);
+        if i == j { 0.0 } else { (self.cost)((ax - bx).hypot(ay - by)) }
+    }
+}
+
+/// The circles of each vehicle in the order of their visits; spare vehicles get none.
+///
+/// The paper's pipeline measures routes by length, as the paper does; the optimising one by time, a leg between two circles
+/// counted as the least time for its length from loiter speed to loiter speed.
+pub(crate) fn routes(
+    mission: &Mission,
+    orbits: &[Orbit],
+    envelope: &Envelope,
+) -> Result<Vec<Vec<usize>>, Error> {
+    let nodes: Vec<[f64; 2]> =
+        std::iter::once(mission.depot).chain(orbits.iter().map(|orbit| orbit.circle.centre)).collect();
+    let slowest = orbits.iter().map(|orbit| orbit.circle.speed).fold(f64::INFINITY, f64::min);
+    let time = |length: f64| envelope.least_time(length, slowest, slowest);
+    let length = |length: f64| length;
+    let (cost, service): (&dyn Fn(f64) -> f64, fn(&Orbit) -> f64) = match mission.pipeline {
+        Pipeline::Paper => (&length, |orbit| orbit.circle.sweep * orbit.circle.radius),
+        Pipeline::Optimised => (&time, |orbit| orbit.circle.duration),
+    };
+    let legs = Legs { nodes: &nodes, cost };
+    let service = std::iter::once(0.0).chain(orbits.iter().map(service)).collect();
+    let problem = Problem::new(&legs, mission.fleet.vehicles)?.with_service(service)?;
+    let solution = match mission.pipeline {
+        Pipeline::Paper => {
+            let clusters = mission.fleet.vehicles.min(orbits.len());
+            let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
+            let labels = cluster::kmeans(&nodes[1..], clusters, &options).map(|found| found.labels)?;
+            assign(&problem, &labels)?
+        }
+        Pipeline::Optimised => {
+            let objective = match mission.objective {
+                Objective::Makespan => mtsp::Objective::Makespan,
+                Objective::Total => mtsp::Objective::Total,
+            };
+            let options = mtsp::Options::default().with_objective(objective).with_seed(mission.seed);
+            mtsp::solve(&problem, &options)?
+        }
+    };
+    let to_circles = |route: Vec<usize>| route.into_iter().map(|node| node - 1).collect();
+    Ok(solution.routes.into_iter().map(to_circles).collect())
+}
+
+/// Which route takes off from which pad: routes in the order of the bearings of their first circles, turned so that the sum of
+/// distances from pads to first circles is least, so that vehicles fan out and need not cross. Spare vehicles take the
+/// pads that are left over. Returns the routes by vehicle.
+pub(crate) fn to_pads(
+    routes: Vec<Vec<usize>>,
+    pads: &[[f64; 3]],
+    orbits: &[Orbit],
+    depot: [f64; 2],
+) -> Vec<Vec<usize>> {
+    let first = |route: &[usize]| route.first().map(|&circle| orbits[circle].circle.centre);
+    let mut flying: Vec<(f64, Vec<usize>)> = routes
+        .into_iter()
+        .filter_map(|route| {
+            let [x, y] = first(&route)?;
+            Some(((y - depot[1]).atan2(x - depot[0]).rem_euclid(std::f64::consts::TAU), route))
+        })
+        .collect();
+    flying.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let n = pads.len();
+    let distance = |pad: usize, route: &[usize]| {
+        first(route).map_or(0.0, |[x, y]| (x - pads[pad][0]).hypot(y - pads[pad][1]))
+    };
+    let spread = |k: usize| k * n / flying.len().max(1);
+    let total = |turn: usize| -> f64 {
+        flying.iter().enumerate().map(|(k, (_, route))| distance((spread(k) + turn) % n, route)).sum()
+    };
+    let turn = (0..n).min_by(|&a, &b| total(a).total_cmp(&total(b))).unwrap_or(0);
+    let mut by_pad = vec![Vec::new(); n];
+    let places: Vec<usize> = (0..flying.len()).map(|k| (spread(k) + turn) % n).collect();
+    for ((_, route), place) in flying.into_iter().zip(places) {
+        by_pad[place] = route;
+    }
+    by_pad
+}

@@ -1,0 +1,51 @@
+//! Where a circle may be entered, and how soon at best.
+
+use crate::bound::Envelope;
+use crate::circles::Orbit;
+use crate::mission::Entries;
+use crate::plan::Entry;
+use quad_dynamics::{Direction, Motion};
+
+/// Samples with which a free entry starts.
+const SAMPLES_BEFORE_FREE: usize = 16;
+
+/// A candidate entry with a certified lower bound on the time to reach it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Entrance {
+    pub entry: Entry,
+    /// No admissible motion is there sooner (s).
+    pub lower_bound: f64,
+}
+
+/// How many entries are sampled.
+pub(crate) fn n_entrances(entries: Entries) -> usize {
+    2 * match entries {
+        Entries::Sampled(n) => n,
+        Entries::Free => SAMPLES_BEFORE_FREE,
+    }
+}
+
+/// The sampled entries of a circle, by angle and then direction, with bounds for a flight from `here`.
+pub(crate) fn entrances(
+    here: &Motion,
+    orbit: &Orbit,
+    entries: Entries,
+    envelope: &Envelope,
+) -> Vec<Entrance> {
+    let n = n_entrances(entries) / 2;
+    (0..n)
+        .map(|i| std::f64::consts::TAU * i as f64 / n as f64)
+        .flat_map(|angle| Direction::BOTH.map(|direction| Entry { angle, direction }))
+        .map(|entry| {
+            let there = orbit.at(entry);
+            Entrance { entry, lower_bound: envelope.least_time_between(here, &there) }
+        })
+        .collect()
+}
+
+/// Indices of the entrances by ascending lower bound; ties by index.
+pub(crate) fn by_promise(entrances: &[Entrance]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..entrances.len()).collect();
+    order.sort_by(|&a, &b| entrances[a].lower_bound.total_cmp(&entrances[b].lower_bound));
+    order
+}

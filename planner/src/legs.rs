@@ -1,0 +1,180 @@
+//! The legs of one route: the paper's Algorithm 1 from pad to circle to circle to pad.
+
+use crate::bound::Envelope;
+use crate::circles::Orbit;
+use crate::entry::{self, Entrance};
+use crate::error::Error;
+use crate::mission::{Entries, Mission};
+use crate::options::Watch;
+use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
+use crate::transition::{Goal, Pilot, Unsolved, hover};
+use quad_dynamics::Motion;
+
+/// Candidates solved between two comparisons with the bounds. A constant, and not the number of threads, so that the same
+/// candidates are discarded on every machine.
+const BATCH: usize = 4;
+
+/// Everything that the legs of all routes share.
+pub(crate) struct Airspace<'a> {
+    pub mission: &'a Mission,
+    pub orbits: &'a [Orbit],
+    pub pilot: Pilot,
+    pub envelope: Envelope,
+    pub watch: Watch<'a>,
+}
+
+/// A solved candidate.
+struct Arrival {
+    /// Where in the list of candidates.
+    index: usize,
+    entry: Entry,
+    transition: Transition,
+}
+
+impl Airspace<'_> {
+    /// How many candidates a route with `stops` circles has; what progress counts.
+    pub(crate) fn n_candidates(&self, stops: usize) -> usize {
+        if stops == 0 { 0 } else { stops * entry::n_entrances(self.mission.transition.entries) + 1 }
+    }
+
+    /// Flies a route from its pad and back, each leg by the fastest of its candidates, starting at time 0.
+    pub(crate) fn fly(&self, vehicle: usize, pad: [f64; 3], route: &[usize]) -> Result<Vec<Leg>, Error> {
+        let mut legs: Vec<Leg> = Vec::with_capacity(route.len() + 1);
+        let Some(&first) = route.first() else { return Ok(legs) };
+        let centre = self.orbits[first].circle.centre;
+        let mut here = hover(self.mission, pad, centre);
+        let mut time = 0.0;
+        for &circle in route {
+            let orbit = &self.orbits[circle];
+            let (arrival, candidates) = self.to_circle(&here, orbit);
+            if self.watch.should_stop() {
+                return Err(Error::Stopped);
+            }
+            let Some(Arrival { entry, transition, .. }) = arrival else {
+                return Err(Error::Leg { vehicle, leg: legs.len(), circle: Some(circle), candidates });
+            };
+            here = orbit.exit(entry);
+            let loiter =
+                Loiter { circle, entry, duration: orbit.circle.duration, length: orbit.loiter.length() };
+            legs.push(Leg { start_time: time, transition, loiter: Some(loiter), candidates });
+            time = legs[legs.len() - 1].end_time();
+        }
+        let (transition, candidates) = self.to_pad(&here, pad);
+        match transition {
+            Some(transition) => legs.push(Leg { start_time: time, transition, loiter: None, candidates }),
+            None => return Err(Error::Leg { vehicle, leg: legs.len(), circle: None, candidates }),
+        }
+        Ok(legs)
+    }
+
+    /// Solves the candidate entries of a circle in order of promise, discarding those that provably cannot win.
+    fn to_circle(&self, here: &Motion, orbit: &Orbit) -> (Option<Arrival>, Vec<Candidate>) {
+        let entrances = entry::entrances(here, orbit, self.mission.transition.entries, &self.envelope);
+        let mut candidates: Vec<Candidate> = entrances
+            .iter()
+            .map(|entrance| Candidate {
+                entry: Some(entrance.entry),
+                outcome: Outcome::ProvenWorse { lower_bound: entrance.lower_bound },
+            })
+            .collect();
+        let mut best: Option<Arrival> = None;
+        for batch in entry::by_promise(&entrances).chunks(BATCH) {
+            if self.watch.should_stop() {
+                break;
+            }
+            let to_beat = best.as_ref().map_or(f64::INFINITY, |arrival| arrival.transition.duration);
+            let open: Vec<usize> =
+                batch.iter().copied().filter(|&i| entrances[i].lower_bound < to_beat).collect();
+            let solved = self.solve_all(here, orbit, &entrances, &open);
+            self.watch.advance(batch.len());
+            for (index, outcome) in open.into_iter().zip(solved) {
+                candidates[index].outcome = match &outcome {
+                    Ok(transition) => Outcome::Solved { duration: transition.duration },
+                    Err(Unsolved { primal_residual, dual_residual }) => {
+                        Outcome::Failed { primal_residual: *primal_residual, dual_residual: *dual_residual }
+                    }
+                };
+                let entry = entrances[index].entry;
+                if let Ok(transition) = outcome {
+                    best = faster(best, Arrival { index, entry, transition });
+                }
+            }
+        }
+        if self.mission.transition.entries == Entries::Free
+            && let Some(sampled) = &best
+        {
+            best = self.freed(here, orbit, sampled, &mut candidates).or(best);
+        }
+        (best, candidates)
+    }
+
+    /// One candidate after the other, or side by side with the feature `rayon`; the results are in the order of `open`.
+    fn solve_all(
+        &self,
+        here: &Motion,
+        orbit: &Orbit,
+        entrances: &[Entrance],
+        open: &[usize],
+    ) -> Vec<Result<Transition, Unsolved>> {
+        let solve = |&i: &usize| {
+            let entrance = &entrances[i];
+            let there = orbit.at(entrance.entry);
+            self.pilot.fly(here, Goal::Motion(there), &there, entrance.lower_bound)
+        };
+        #[cfg(feature = "rayon")]
+        {
+            use rayon::prelude::*;
+            open.par_iter().map(solve).collect()
+        }
+        #[cfg(not(feature = "rayon"))]
+        open.iter().map(solve).collect()
+    }
+
+    /// The best sampled arrival with its angle set free; kept only if it is faster.
+    fn freed(
+        &self,
+        here: &Motion,
+        orbit: &Orbit,
+        sampled: &Arrival,
+        candidates: &mut Vec<Candidate>,
+    ) -> Option<Arrival> {
+        let goal = Goal::Circle(orbit, sampled.entry.direction);
+        let transition =
+            self.pilot.fly(here, goal, &orbit.at(sampled.entry), sampled.transition.duration).ok()?;
+        if transition.duration >= sampled.transition.duration {
+            return None;
+        }
+        let end = transition.states.last()?;
+        let [x, y] = orbit.circle.centre;
+        let entry = Entry { angle: (end[1] - y).atan2(end[0] - x), ..sampled.entry };
+        candidates.push(Candidate {
+            entry: Some(entry),
+            outcome: Outcome::Solved { duration: transition.duration },
+        });
+        Some(Arrival { index: candidates.len() - 1, entry, transition })
+    }
+
+    fn to_pad(&self, here: &Motion, pad: [f64; 3]) -> (Option<Transition>, Vec<Candidate>) {
+        let there = hover(self.mission, pad, [pad[0] + 1.0, pad[1]]);
+        let solved =
+            self.pilot.fly(here, Goal::Hover(there), &there, self.envelope.least_time_between(here, &there));
+        self.watch.advance(1);
+        let outcome = match &solved {
+            Ok(transition) => Outcome::Solved { duration: transition.duration },
+            Err(Unsolved { primal_residual, dual_residual }) => {
+                Outcome::Failed { primal_residual: *primal_residual, dual_residual: *dual_residual }
+            }
+        };
+        (solved.ok(), vec![Candidate { entry: None, outcome }])
+    }
+}
+
+/// The faster of two arrivals; of equals the one that stands first in the list of candidates.
+fn faster(best: Option<Arrival>, new: Arrival) -> Option<Arrival> {
+    match best {
+        Some(old) if (old.transition.duration, old.index) <= (new.transition.duration, new.index) => {
+            Some(old)
+        }
+        _ => Some(new),
+    }
+}

@@ -1,0 +1,63 @@
+//! How planning is watched and stopped.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What a caller may add to [`plan`](crate::plan()).
+#[derive(Clone, Copy, Default)]
+#[non_exhaustive]
+pub struct Options<'a> {
+    /// Called from any thread whenever candidates have been settled. Default: nobody listens.
+    pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    /// Asked between solves; once it returns true, planning ends with [`Error::Stopped`](crate::Error::Stopped).
+    /// Default: never stop.
+    pub should_stop: Option<&'a (dyn Fn() -> bool + Sync)>,
+}
+
+/// How far planning has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Candidate entries solved or discarded so far.
+    pub done: usize,
+    /// Candidate entries of all legs.
+    pub total: usize,
+}
+
+impl<'a> Options<'a> {
+    /// Sets the function that hears of progress.
+    #[must_use]
+    pub fn with_progress(mut self, progress: &'a (dyn Fn(Progress) + Sync)) -> Self {
+        self.progress = Some(progress);
+        self
+    }
+
+    /// Sets the function that may stop the planning.
+    #[must_use]
+    pub fn with_should_stop(mut self, should_stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        self.should_stop = Some(should_stop);
+        self
+    }
+}
+
+/// The options while planning, with the count so far.
+pub(crate) struct Watch<'a> {
+    options: Options<'a>,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl<'a> Watch<'a> {
+    pub(crate) fn new(options: Options<'a>, total: usize) -> Self {
+        Self { options, done: AtomicUsize::new(0), total }
+    }
+
+    pub(crate) fn advance(&self, candidates: usize) {
+        let done = self.done.fetch_add(candidates, Ordering::Relaxed) + candidates;
+        if let Some(progress) = self.options.progress {
+            progress(Progress { done, total: self.total });
+        }
+    }
+
+    pub(crate) fn should_stop(&self) -> bool {
+        self.options.should_stop.is_some_and(|should_stop| should_stop())
+    }
+}

@@ -1,0 +1,133 @@
+//! From mission to plan.
+
+use crate::bound::Envelope;
+use crate::circles::{Orbit, orbits};
+use crate::error::{Error, Problem};
+use crate::legs::Airspace;
+use crate::mission::{Mission, Model};
+use crate::options::{Options, Watch};
+use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
+use crate::sample::Sampler;
+use crate::separation::{Airborne, closest_pair};
+use crate::transition::Pilot;
+use crate::{allocation, certificate};
+
+/// Plans a mission.
+///
+/// # Errors
+/// [`Error::Mission`] with all that is wrong with the mission, before any work is done; [`Error::Leg`] if no candidate entry
+/// of a leg can be solved; [`Error::Stopped`] if the caller asked for it.
+///
+/// # Complexity
+/// Dominated by the transitions: for every target at most twice the number of entries, each an optimal control problem whose
+/// solution takes time linear in the number of segments.
+pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
+    let problems = mission.problems();
+    if !problems.is_empty() {
+        return Err(Error::Mission { problems });
+    }
+    let orbits = orbits(mission)
+        .map_err(|source| Error::Mission { problems: vec![Problem::Loiter { target: 0, source }] })?;
+    let envelope = envelope(mission, &orbits);
+    let pads = mission.pads();
+    let routes = allocation::routes(mission, &orbits, &envelope)?;
+    let routes = allocation::to_pads(routes, &pads, &orbits, mission.depot);
+    let mut airspace = Airspace {
+        mission,
+        orbits: &orbits,
+        pilot: Pilot::new(mission, &orbits),
+        envelope,
+        watch: Watch::new(*options, 0),
+    };
+    let total = routes.iter().map(|route| airspace.n_candidates(route.len())).sum();
+    airspace.watch = Watch::new(*options, total);
+    let legs = fly_all(&airspace, &pads, &routes)?;
+    let vehicles: Vec<VehiclePlan> = pads
+        .into_iter()
+        .zip(routes)
+        .zip(legs)
+        .map(|((pad, route), legs)| VehiclePlan { pad, route, legs })
+        .collect();
+    let certificate = certificate::certificate(mission, &orbits, &envelope, &vehicles)?;
+    let circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
+    let mut plan = Plan { circles, vehicles, certificate, closest_approach: None, warnings: Vec::new() };
+    if let Some(sampler) = Sampler::new(&plan, mission) {
+        plan.closest_approach = closest_approach(&plan, &sampler);
+    }
+    plan.warnings = warnings(&plan, mission);
+    Ok(plan)
+}
+
+/// How fast the mission's vehicles can possibly speed up and brake.
+fn envelope(mission: &Mission, orbits: &[Orbit]) -> Envelope {
+    let vehicle = &mission.fleet.vehicle;
+    let (transition, shaping) = (&mission.transition, &mission.transition.shaping);
+    let fastest = orbits.iter().map(|orbit| orbit.circle.speed).fold(0.0, f64::max);
+    if transition.model == Model::JerkLimited {
+        return Envelope::of_limits(shaping.speed.max(fastest), shaping.acceleration);
+    }
+    let share = transition.thrust_budget.max(mission.loiter.thrust_budget);
+    let (mass, drag) = (vehicle.mass(), vehicle.drag_coefficient());
+    Envelope::of_thrust(share * vehicle.max_thrust(), mass, drag, quad_dynamics::GRAVITY, fastest)
+}
+
+/// The legs of every route; with the feature `rayon` side by side. The first error by vehicle counts, on any number of threads.
+fn fly_all(airspace: &Airspace, pads: &[[f64; 3]], routes: &[Vec<usize>]) -> Result<Vec<Vec<Leg>>, Error> {
+    let fly = |vehicle: usize| airspace.fly(vehicle, pads[vehicle], &routes[vehicle]);
+    #[cfg(feature = "rayon")]
+    let flown: Vec<Result<Vec<Leg>, Error>> = {
+        use rayon::prelude::*;
+        (0..routes.len()).into_par_iter().map(fly).collect()
+    };
+    #[cfg(not(feature = "rayon"))]
+    let flown: Vec<Result<Vec<Leg>, Error>> = (0..routes.len()).map(fly).collect();
+    flown.into_iter().collect()
+}
+
+fn closest_approach(plan: &Plan, sampler: &Sampler) -> Option<crate::plan::Approach> {
+    let positions: Vec<Box<dyn Fn(f64) -> [f64; 3] + '_>> = (0..plan.vehicles.len())
+        .map(|vehicle| {
+            Box::new(move |time| sampler.sample(vehicle, time).position) as Box<dyn Fn(f64) -> [f64; 3]>
+        })
+        .collect();
+    let fleet: Vec<Option<Airborne>> = plan
+        .vehicles
+        .iter()
+        .zip(&positions)
+        .map(|(vehicle, position)| {
+            let (first, last) = (vehicle.legs.first()?, vehicle.legs.last()?);
+            let transitions = vehicle.legs.iter().map(|leg| leg.transition.max_speed);
+            let loiters = vehicle.route.iter().map(|&circle| plan.circles[circle].speed);
+            let top_speed = transitions.chain(loiters).fold(0.0, f64::max);
+            Some(Airborne { position, flight: [first.start_time, last.end_time()], top_speed })
+        })
+        .collect();
+    closest_pair(&fleet)
+}
+
+fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let spare = plan.vehicles.iter().filter(|vehicle| vehicle.route.is_empty()).count();
+    if spare > 0 {
+        warnings.push(Warning::Spare { vehicles: spare });
+    }
+    let required = mission.fleet.separation;
+    if let Some(approach) = plan.closest_approach.filter(|approach| approach.distance < required) {
+        warnings.push(Warning::Separation { approach, required });
+    }
+    for (vehicle, planned) in plan.vehicles.iter().enumerate() {
+        let (duration, endurance) = (planned.duration(), mission.fleet.endurance);
+        if duration > endurance {
+            warnings.push(Warning::Endurance { vehicle, duration, endurance });
+        }
+        for (leg, planned) in planned.legs.iter().enumerate() {
+            let failed =
+                |candidate: &&crate::plan::Candidate| matches!(candidate.outcome, Outcome::Failed { .. });
+            let candidates = planned.candidates.iter().filter(failed).count();
+            if candidates > 0 {
+                warnings.push(Warning::FailedCandidates { vehicle, leg, candidates });
+            }
+        }
+    }
+    warnings
+}

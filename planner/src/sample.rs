@@ -1,0 +1,90 @@
+//! Where every vehicle is at any moment of a plan.
+
+use crate::circles::{Orbit, orbits};
+use crate::mission::Mission;
+use crate::plan::{Leg, Phase, Plan, Sample};
+use crate::transition::{Pilot, hover};
+use quad_dynamics::Motion;
+use quad_dynamics::frames::to_wxyz;
+
+/// A plan together with what its mission says of vehicle and circles, ready to be asked for moments.
+pub(crate) struct Sampler<'a> {
+    plan: &'a Plan,
+    mission: &'a Mission,
+    orbits: Vec<Orbit>,
+    pilot: Pilot,
+}
+
+impl<'a> Sampler<'a> {
+    /// `None` if the mission's circles cannot be flown, or are not the plan's.
+    pub(crate) fn new(plan: &'a Plan, mission: &'a Mission) -> Option<Self> {
+        let orbits = orbits(mission).ok()?;
+        if orbits.len() != plan.circles.len() {
+            return None;
+        }
+        let pilot = Pilot::new(mission, &orbits);
+        Some(Self { plan, mission, orbits, pilot })
+    }
+
+    /// The moment `time` (s after the mission's start) of a vehicle; hover on its pad before and after its flight.
+    pub(crate) fn sample(&self, vehicle: usize, time: f64) -> Sample {
+        let planned = &self.plan.vehicles[vehicle];
+        let k = planned.legs.partition_point(|leg| leg.start_time <= time).saturating_sub(1);
+        let flown = planned.legs.get(k).filter(|leg| time >= leg.start_time && time <= leg.end_time());
+        let (motion, phase, circle) = flown.and_then(|leg| self.in_leg(leg, time)).unwrap_or_else(|| {
+            let [x, y, _] = planned.pad;
+            (hover(self.mission, planned.pad, [x + 1.0, y]), Phase::Pad, None)
+        });
+        Sample {
+            time,
+            position: motion.position.into(),
+            velocity: motion.velocity.into(),
+            acceleration: motion.acceleration.into(),
+            attitude: to_wxyz(&motion.attitude).into(),
+            body_rates: motion.body_rates.into(),
+            collective_thrust: motion.collective_thrust,
+            phase,
+            circle,
+        }
+    }
+
+    fn in_leg(&self, leg: &Leg, time: f64) -> Option<(Motion, Phase, Option<usize>)> {
+        match leg.loiter {
+            Some(loiter) if time >= leg.arrival_time() => {
+                let motion = self.orbits.get(loiter.circle)?.after(loiter.entry, time - leg.arrival_time());
+                Some((motion, Phase::Loiter, Some(loiter.circle)))
+            }
+            _ => {
+                let motion = self.pilot.motion(&leg.transition, time - leg.start_time)?;
+                Some((motion, Phase::Transition, leg.loiter.map(|loiter| loiter.circle)))
+            }
+        }
+    }
+}
+
+impl Plan {
+    /// Where a vehicle is `time` seconds after the mission's start; on its pad before and after its flight.
+    ///
+    /// `None` if there is no such vehicle, or if `mission` is not the one that was planned.
+    #[must_use]
+    pub fn sample(&self, mission: &Mission, vehicle: usize, time: f64) -> Option<Sample> {
+        (vehicle < self.vehicles.len()).then_some(())?;
+        Some(Sampler::new(self, mission)?.sample(vehicle, time))
+    }
+
+    /// A vehicle's flight at `rate` (Hz, above 0), its last moment included; empty for a spare vehicle.
+    ///
+    /// `None` if there is no such vehicle, if the rate is not positive, or if `mission` is not the one that was planned.
+    #[must_use]
+    pub fn samples(&self, mission: &Mission, vehicle: usize, rate: f64) -> Option<Vec<Sample>> {
+        let legs = &self.vehicles.get(vehicle)?.legs;
+        if !(rate > 0.0 && rate.is_finite()) {
+            return None;
+        }
+        let sampler = Sampler::new(self, mission)?;
+        let (Some(first), Some(last)) = (legs.first(), legs.last()) else { return Some(Vec::new()) };
+        let (start, end) = (first.start_time, last.end_time());
+        let steps = ((end - start) * rate).ceil() as usize;
+        Some((0..=steps).map(|i| sampler.sample(vehicle, (start + i as f64 / rate).min(end))).collect())
+    }
+}

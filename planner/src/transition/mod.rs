@@ -1,0 +1,130 @@
+//! Minimum-time flights from a moment of one loiter to a moment of the next, or from and to hover.
+//!
+//! | step | file |
+//! |---|---|
+//! | what a model must tell | `flight.rs`, for each model in `models.rs` |
+//! | the optimal control problem | `problem.rs` |
+//! | first trajectories | `guess.rs` |
+//! | solving, and solving again with what was overstepped put farther away | `solve.rs` |
+//! | looking at the result between the knots, without the solver | `examine.rs` |
+
+mod examine;
+mod flight;
+mod guess;
+mod models;
+mod problem;
+mod solve;
+
+pub(crate) use examine::{Examination, miss};
+pub(crate) use problem::Goal;
+pub(crate) use solve::Unsolved;
+
+use crate::circles::Orbit;
+use crate::mission::{Mission, Model, TransitionSettings};
+use crate::plan::{Entry, Transition};
+use models::{JerkLimitedFlight, PointMassFlight, RigidBodyFlight, ThrustRateFlight};
+use nalgebra::Vector3;
+use problem::KeepOut;
+use quad_dynamics::Motion;
+use solve::Surroundings;
+
+/// The mission's model with everything that its transitions have in common.
+#[derive(Debug, Clone)]
+pub(crate) struct Pilot {
+    airframe: Airframe,
+    keep_outs: Vec<KeepOut>,
+    settings: TransitionSettings,
+}
+
+/// One of the models.
+#[derive(Debug, Clone)]
+enum Airframe {
+    PointMass(PointMassFlight),
+    JerkLimited(JerkLimitedFlight),
+    ThrustRate(ThrustRateFlight),
+    RigidBody(RigidBodyFlight),
+}
+
+/// Calls a function that is generic over the model's sizes with the model at hand.
+macro_rules! with_flight {
+    ($airframe:expr, $flight:ident => $call:expr) => {
+        match $airframe {
+            Airframe::PointMass($flight) => $call,
+            Airframe::JerkLimited($flight) => $call,
+            Airframe::ThrustRate($flight) => $call,
+            Airframe::RigidBody($flight) => $call,
+        }
+    };
+}
+
+impl Pilot {
+    pub(crate) fn new(mission: &Mission, orbits: &[Orbit]) -> Self {
+        let settings = mission.transition.clone();
+        let vehicle = &mission.fleet.vehicle;
+        let airframe = match settings.model {
+            Model::PointMass => Airframe::PointMass(PointMassFlight::new(vehicle, &settings)),
+            Model::JerkLimited => Airframe::JerkLimited(JerkLimitedFlight::new(vehicle, &settings)),
+            Model::ThrustRate => Airframe::ThrustRate(ThrustRateFlight::new(vehicle, &settings)),
+            Model::RigidBody => Airframe::RigidBody(RigidBodyFlight::new(vehicle, &settings, orbits)),
+        };
+        let keep_outs = (0..mission.targets.len())
+            .map(|i| KeepOut { centre: mission.targets[i].position, radius: mission.safe_distance(i) })
+            .collect();
+        Self { airframe, keep_outs, settings }
+    }
+
+    /// The fastest transition to a goal; guesses lead `towards` (for a circle a promising entry), and `about` is a first idea
+    /// of the time (s).
+    pub(crate) fn fly(
+        &self,
+        start: &Motion,
+        goal: Goal,
+        towards: &Motion,
+        about: f64,
+    ) -> Result<Transition, Unsolved> {
+        let surroundings = Surroundings {
+            keep_outs: &self.keep_outs,
+            heights: self.settings.heights,
+            settings: &self.settings,
+        };
+        with_flight!(&self.airframe, flight => solve::fly(flight, start, goal, towards, about, &surroundings))
+    }
+
+    /// The transition as an independent integration of its controls sees it; `None` if it is malformed.
+    pub(crate) fn examine(&self, transition: &Transition, start: &Motion) -> Option<Examination> {
+        let heights = self.settings.heights;
+        with_flight!(&self.airframe, flight => examine::examine(flight, transition, start, &self.keep_outs, heights))
+    }
+
+    /// The motion `time` (s) after the transition's start; `None` if it is malformed.
+    pub(crate) fn motion(&self, transition: &Transition, time: f64) -> Option<Motion> {
+        with_flight!(&self.airframe, flight => examine::motion(flight, transition, time))
+    }
+}
+
+/// The mission's vehicle hovering at `position` with its nose towards a place (east, north).
+pub(crate) fn hover(mission: &Mission, position: [f64; 3], towards: [f64; 2]) -> Motion {
+    let yaw = (towards[1] - position[1]).atan2(towards[0] - position[0]);
+    Motion::hover(&mission.fleet.vehicle, Vector3::from(position), yaw)
+}
+
+impl Orbit {
+    /// The vehicle's motion where the circle is entered.
+    pub(crate) fn at(&self, entry: Entry) -> Motion {
+        let [x, y] = self.circle.centre;
+        self.loiter.state(entry.angle, entry.direction).translated(&Vector3::new(x, y, self.circle.height))
+    }
+
+    /// The vehicle's motion where it leaves a circle that it entered at `entry`: a sweep further on.
+    pub(crate) fn exit(&self, entry: Entry) -> Motion {
+        self.at(Entry { angle: self.loiter.exit_angle(entry.angle, entry.direction), ..entry })
+    }
+
+    /// Where a vehicle that entered at `entry` is `time` (s) later.
+    pub(crate) fn after(&self, entry: Entry, time: f64) -> Motion {
+        self.at(Entry {
+            angle: entry.angle + entry.direction.sign() * self.loiter.angular_speed() * time,
+            ..entry
+        })
+    }
+}

@@ -1,0 +1,236 @@
+//! The four models of the vehicle with their limits.
+
+use super::flight::{Flight, real};
+use crate::circles::Orbit;
+use crate::mission::{Model, TransitionSettings};
+use nalgebra::{RealField, SVector, Vector3};
+use quad_dynamics::{
+    Direction, Heading, JerkLimited, Motion, PointMass, RigidBody, ShapingLimits, ThrustRate, Vehicle,
+};
+use traj_opt::Dynamics;
+
+/// Lets `traj-opt` see a model of `quad-dynamics`; the two crates do not know each other.
+macro_rules! dynamics {
+    ($flight:ty, $nx:literal, $nu:literal) => {
+        impl Dynamics<$nx, $nu> for $flight {
+            fn derivative<T: RealField + Copy>(
+                &self,
+                _time: T,
+                state: &SVector<T, $nx>,
+                control: &SVector<T, $nu>,
+            ) -> SVector<T, $nx> {
+                self.model.derivative(state, control)
+            }
+
+            fn is_autonomous(&self) -> bool {
+                true
+            }
+        }
+    };
+}
+
+/// Position and velocity under a bounded thrust vector.
+#[derive(Debug, Clone)]
+pub(crate) struct PointMassFlight {
+    model: PointMass,
+    weight: f64,
+    max_thrust: f64,
+}
+
+dynamics!(PointMassFlight, 6, 3);
+
+impl PointMassFlight {
+    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
+        let max_thrust = settings.thrust_budget * vehicle.max_thrust();
+        Self { model: PointMass::new(vehicle), weight: vehicle.weight(), max_thrust }
+    }
+}
+
+impl Flight<6, 3> for PointMassFlight {
+    const MODEL: Model = Model::PointMass;
+    const ATTITUDE: Option<usize> = None;
+
+    fn state(&self, motion: &Motion) -> SVector<f64, 6> {
+        motion.point_mass_state()
+    }
+
+    fn hover_control(&self) -> SVector<f64, 3> {
+        SVector::from([0.0, 0.0, self.weight])
+    }
+
+    fn control_bounds(&self) -> (SVector<f64, 3>, SVector<f64, 3>) {
+        (SVector::repeat(-self.max_thrust), SVector::repeat(self.max_thrust))
+    }
+
+    fn n_limits(&self) -> usize {
+        1
+    }
+
+    fn limits<T: RealField + Copy>(&self, _: &SVector<T, 6>, control: &SVector<T, 3>, values: &mut [T]) {
+        values[0] = control.norm_squared() / real(self.max_thrust * self.max_thrust);
+    }
+
+    fn motion(&self, state: &SVector<f64, 6>, control: &SVector<f64, 3>) -> Motion {
+        self.model.motion(state, control, Heading::AlongTrack)
+    }
+}
+
+/// Position, velocity and acceleration under bounded jerk, inside an autopilot's shaping limits.
+#[derive(Debug, Clone)]
+pub(crate) struct JerkLimitedFlight {
+    model: JerkLimited,
+    shaping: ShapingLimits,
+}
+
+dynamics!(JerkLimitedFlight, 9, 3);
+
+impl JerkLimitedFlight {
+    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
+        Self { model: JerkLimited::new(vehicle), shaping: settings.shaping }
+    }
+}
+
+impl Flight<9, 3> for JerkLimitedFlight {
+    const MODEL: Model = Model::JerkLimited;
+    const ATTITUDE: Option<usize> = None;
+
+    fn state(&self, motion: &Motion) -> SVector<f64, 9> {
+        motion.jerk_limited_state()
+    }
+
+    fn hover_control(&self) -> SVector<f64, 3> {
+        SVector::zeros()
+    }
+
+    fn control_bounds(&self) -> (SVector<f64, 3>, SVector<f64, 3>) {
+        let bound = SVector::from([self.shaping.jerk, self.shaping.jerk, self.shaping.vertical_jerk]);
+        (-bound, bound)
+    }
+
+    fn state_bounds(&self) -> (SVector<f64, 9>, SVector<f64, 9>) {
+        let (mut lower, mut upper) = (SVector::repeat(f64::NEG_INFINITY), SVector::repeat(f64::INFINITY));
+        (lower[5], upper[5]) = (-self.shaping.descent_speed, self.shaping.climb_speed);
+        (lower[8], upper[8]) = (-self.shaping.vertical_acceleration, self.shaping.vertical_acceleration);
+        (lower, upper)
+    }
+
+    fn n_limits(&self) -> usize {
+        3
+    }
+
+    /// The horizontal limits hold for the length of the vector, as the autopilot applies them.
+    fn limits<T: RealField + Copy>(&self, state: &SVector<T, 9>, control: &SVector<T, 3>, values: &mut [T]) {
+        let ShapingLimits { speed, acceleration, jerk, .. } = self.shaping;
+        let share = |x: T, y: T, limit: f64| (x * x + y * y) / real(limit * limit);
+        values[0] = share(state[3], state[4], speed);
+        values[1] = share(state[6], state[7], acceleration);
+        values[2] = share(control[0], control[1], jerk);
+    }
+
+    fn motion(&self, state: &SVector<f64, 9>, control: &SVector<f64, 3>) -> Motion {
+        self.model.motion(state, control, Heading::AlongTrack)
+    }
+}
+
+/// Position, velocity and attitude under collective thrust and body rates.
+#[derive(Debug, Clone)]
+pub(crate) struct ThrustRateFlight {
+    model: ThrustRate,
+    weight: f64,
+    thrust: [f64; 2],
+    rates: Vector3<f64>,
+}
+
+dynamics!(ThrustRateFlight, 10, 4);
+
+impl ThrustRateFlight {
+    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
+        let budget = settings.thrust_budget;
+        Self {
+            model: ThrustRate::new(vehicle),
+            weight: vehicle.weight(),
+            thrust: [vehicle.min_thrust(), budget * vehicle.max_thrust()],
+            rates: vehicle.max_body_rates() * budget,
+        }
+    }
+}
+
+impl Flight<10, 4> for ThrustRateFlight {
+    const MODEL: Model = Model::ThrustRate;
+    const ATTITUDE: Option<usize> = Some(6);
+
+    fn state(&self, motion: &Motion) -> SVector<f64, 10> {
+        motion.thrust_rate_state()
+    }
+
+    fn hover_control(&self) -> SVector<f64, 4> {
+        SVector::from([self.weight, 0.0, 0.0, 0.0])
+    }
+
+    fn control_bounds(&self) -> (SVector<f64, 4>, SVector<f64, 4>) {
+        let ([least, greatest], rates) = (self.thrust, self.rates);
+        let with = |thrust, rates: Vector3<f64>| SVector::from([thrust, rates.x, rates.y, rates.z]);
+        (with(least, -rates), with(greatest, rates))
+    }
+
+    fn motion(&self, state: &SVector<f64, 10>, control: &SVector<f64, 4>) -> Motion {
+        self.model.motion(state, control)
+    }
+}
+
+/// Position, velocity, attitude and body rates under four rotor thrusts.
+#[derive(Debug, Clone)]
+pub(crate) struct RigidBodyFlight {
+    model: RigidBody,
+    weight: f64,
+    rotor_thrust: [f64; 2],
+    rates: Vector3<f64>,
+}
+
+dynamics!(RigidBodyFlight, 13, 4);
+
+impl RigidBodyFlight {
+    /// Body rates are states here: their budget is never below what the loiters at both ends of a transition have.
+    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings, orbits: &[Orbit]) -> Self {
+        let budget = settings.thrust_budget;
+        let mut rates = vehicle.max_body_rates() * budget;
+        for orbit in orbits {
+            // The slack keeps an interior for the solver when the loiter is limited by the very rate.
+            let loiter = orbit.loiter.state(0.0, Direction::CounterClockwise).body_rates.abs() * (1.0 + 1e-6);
+            rates = rates.sup(&loiter);
+        }
+        Self {
+            model: RigidBody::new(vehicle),
+            weight: vehicle.weight(),
+            rotor_thrust: [vehicle.min_rotor_thrust(), budget * vehicle.max_rotor_thrust()],
+            rates,
+        }
+    }
+}
+
+impl Flight<13, 4> for RigidBodyFlight {
+    const MODEL: Model = Model::RigidBody;
+    const ATTITUDE: Option<usize> = Some(6);
+
+    fn state(&self, motion: &Motion) -> SVector<f64, 13> {
+        motion.rigid_body_state()
+    }
+
+    fn hover_control(&self) -> SVector<f64, 4> {
+        SVector::repeat(0.25 * self.weight)
+    }
+
+    fn control_bounds(&self) -> (SVector<f64, 4>, SVector<f64, 4>) {
+        (SVector::repeat(self.rotor_thrust[0]), SVector::repeat(self.rotor_thrust[1]))
+    }
+
+    fn state_bounds(&self) -> (SVector<f64, 13>, SVector<f64, 13>) {
+        let mut upper: SVector<f64, 13> = SVector::repeat(f64::INFINITY);
+        upper.fixed_rows_mut::<3>(10).copy_from(&self.rates);
+        (-upper, upper)
+    }
+
+    fn motion(&self, state: &SVector<f64, 13>, control: &SVector<f64, 4>) -> Motion {
+        self.model.motion(state, control)
+    }
+}

@@ -1,0 +1,272 @@
+//! The paper's minimum-time transition: solved, looked at between the knots, and solved again where that is not enough.
+
+use super::examine::{Examination, examine, miss};
+use super::flight::Flight;
+use super::guess::guess;
+use super::problem::{Goal, KeepOut, MinimumTime};
+use crate::mission::{Transcription, TransitionSettings};
+use crate::plan::{Entry, Miss, SolverStatus, Transition};
+use quad_dynamics::Motion;
+use traj_opt::{Guess, Mesh, Options, Solution};
+
+/// Misses (m, m/s, rad) above this are worth a finer integration inside the transcription: a tenth of what is tolerated.
+const GOOD_MISS: Miss = Miss { position: 0.005, velocity: 0.005, attitude: 0.002 };
+/// Overstepping of heights and limits between knots that is worth another solve (m, rad/s, share of a limit).
+const GOOD_BOUND: f64 = 0.002;
+/// Solves of one transition with enlarged keep-outs, narrowed heights or finer steps.
+const ROUNDS: usize = 6;
+/// Scaled residual at which a transition counts as solved: far below what any vehicle can follow.
+const TOLERANCE: f64 = 1e-6;
+/// Longest Runge-Kutta step (s): at 6 rad/s its error in attitude is below 1e-5 rad.
+const LONGEST_STEP: f64 = 0.04;
+/// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
+const OUTER_SEGMENT: f64 = 0.06;
+
+/// Everything around a transition that does not change from one candidate to the next.
+#[derive(Clone, Copy)]
+pub(crate) struct Surroundings<'a> {
+    /// Every target's safe distance.
+    pub keep_outs: &'a [KeepOut],
+    /// Least and greatest height (m).
+    pub heights: [f64; 2],
+    /// The mission's settings.
+    pub settings: &'a TransitionSettings,
+}
+
+/// Residuals of the best failed attempt.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Unsolved {
+    pub primal_residual: f64,
+    pub dual_residual: f64,
+}
+
+impl Unsolved {
+    /// Not even begun.
+    const NOTHING: Self = Self { primal_residual: f64::INFINITY, dual_residual: f64::INFINITY };
+}
+
+/// The fastest transition from `start` to `goal` found from several guesses; `towards` is where guesses lead (for a
+/// circle a promising entry). `about` is a first idea of its time (s).
+pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
+    flight: &F,
+    start: &Motion,
+    goal: Goal,
+    towards: &Motion,
+    about: f64,
+    surroundings: &Surroundings,
+) -> Result<Transition, Unsolved> {
+    let mut unsolved = Unsolved::NOTHING;
+    for (straight, stretch, finer) in [(false, 1.2, 1), (true, 1.5, 1), (false, 2.5, 2)] {
+        let attempt =
+            Attempt { flight, start, goal, surroundings, segments: surroundings.settings.segments * finer };
+        let keep_outs = attempt.near(towards);
+        let free_yaw = matches!(goal, Goal::Hover(_));
+        let first = guess(flight, start, towards, &keep_outs, stretch * about + 0.3, straight, free_yaw);
+        match attempt.refine(first, keep_outs) {
+            Ok(transition) => return Ok(transition),
+            Err(residuals) if residuals.primal_residual <= unsolved.primal_residual => unsolved = residuals,
+            Err(_) => {}
+        }
+    }
+    Err(unsolved)
+}
+
+/// What may change from one solve of a transition to the next.
+struct Setting {
+    keep_outs: Vec<KeepOut>,
+    heights: [f64; 2],
+    longest_step: f64,
+    segments: usize,
+}
+
+struct Attempt<'a, F> {
+    flight: &'a F,
+    start: &'a Motion,
+    goal: Goal<'a>,
+    surroundings: &'a Surroundings<'a>,
+    segments: usize,
+}
+
+impl<F> Attempt<'_, F> {
+    /// The keep-outs that a sensible flight may touch: those within a third of the distance from the straight line.
+    fn near(&self, towards: &Motion) -> Vec<KeepOut> {
+        let a = self.start.position;
+        let (dx, dy) = (towards.position.x - a.x, towards.position.y - a.y);
+        let squared = dx * dx + dy * dy;
+        let near = |keep_out: &&KeepOut| {
+            let (px, py) = (keep_out.centre[0] - a.x, keep_out.centre[1] - a.y);
+            let s = if squared > 0.0 { ((px * dx + py * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            keep_out.radius > 0.0
+                && (px - s * dx).hypot(py - s * dy) < keep_out.radius + 8.0 + squared.sqrt() / 3.0
+        };
+        self.surroundings.keep_outs.iter().filter(near).copied().collect()
+    }
+
+    /// Solves, examines the result between the knots, and solves again with what was overstepped put farther away.
+    fn refine<const NX: usize, const NU: usize>(
+        &self,
+        mut first: Guess<NX, NU>,
+        keep_outs: Vec<KeepOut>,
+    ) -> Result<Transition, Unsolved>
+    where
+        F: Flight<NX, NU>,
+    {
+        let mut setting = Setting {
+            keep_outs,
+            heights: self.surroundings.heights,
+            longest_step: LONGEST_STEP,
+            segments: self.segments,
+        };
+        let mut residuals = Unsolved::NOTHING;
+        for round in 1..=ROUNDS {
+            let Some(solution) = self.solve(&first, &setting) else { return Err(residuals) };
+            residuals = Unsolved {
+                primal_residual: solution.residuals.primal,
+                dual_residual: solution.residuals.dual.max(solution.residuals.complementarity),
+            };
+            if !solution.status.is_success() {
+                return Err(residuals);
+            }
+            let mut transition = record::<NX, NU, F>(&solution);
+            let Some(seen) = self.look(&transition) else { return Err(residuals) };
+            complete(&mut transition, &seen, self.miss(&solution, &seen.end));
+            let clear = seen.clearance >= 0.0;
+            if !self.adjust(&mut setting, &transition, &seen) || (round == ROUNDS && clear) {
+                return Ok(transition);
+            }
+            first = Guess::from_solution(&solution, 1);
+        }
+        Err(residuals)
+    }
+
+    /// Makes the setting stricter where the examination saw something overstepped; false if there was nothing.
+    fn adjust(&self, setting: &mut Setting, transition: &Transition, seen: &Examination) -> bool {
+        let mut again = false;
+        if seen.clearance < 0.0
+            && let Some(closest) = seen.closest
+        {
+            enlarge(&mut setting.keep_outs, self.surroundings.keep_outs[closest], -seen.clearance);
+            again = true;
+        }
+        // A collocation scheme is judged by its own equations, and its miss is what the caller asked to see.
+        if self.surroundings.settings.transcription != Transcription::RungeKutta {
+            return again;
+        }
+        if seen.height_violation > GOOD_BOUND {
+            setting.heights = narrowed(setting.heights, self.surroundings.heights, seen.height_violation);
+            again = true;
+        }
+        if seen.limit_violation > GOOD_BOUND && setting.segments < 4 * self.segments {
+            // Between knots a limit is overstepped by the square of their distance.
+            setting.segments *= 2;
+            again = true;
+        }
+        if !within(&transition.miss, &GOOD_MISS) {
+            setting.longest_step *= 0.5;
+            again = true;
+        }
+        again
+    }
+
+    fn solve<const NX: usize, const NU: usize>(
+        &self,
+        first: &Guess<NX, NU>,
+        setting: &Setting,
+    ) -> Option<Solution<NX, NU>>
+    where
+        F: Flight<NX, NU>,
+    {
+        let Setting { ref keep_outs, heights, longest_step, segments } = *setting;
+        let problem =
+            MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
+        let uniform = first.final_time() / segments as f64;
+        let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
+        let transcription = match self.surroundings.settings.transcription {
+            Transcription::RungeKutta => {
+                let substeps = (1.5 * uniform / longest_step).ceil().clamp(1.0, 64.0) as usize;
+                traj_opt::Transcription::RungeKutta { substeps }
+            }
+            Transcription::HermiteSimpson => traj_opt::Transcription::HermiteSimpson,
+            Transcription::Trapezoidal => traj_opt::Transcription::Trapezoidal,
+        };
+        traj_opt::solve(&problem, &mesh, transcription, first, &Options::default().with_tolerance(TOLERANCE))
+            .ok()
+    }
+
+    fn look<const NX: usize, const NU: usize>(&self, transition: &Transition) -> Option<Examination>
+    where
+        F: Flight<NX, NU>,
+    {
+        let Surroundings { keep_outs, heights, .. } = *self.surroundings;
+        examine(self.flight, transition, self.start, keep_outs, heights)
+    }
+
+    /// How far the integrated controls end from what the solution claims to reach.
+    fn miss<const NX: usize, const NU: usize>(&self, solution: &Solution<NX, NU>, end: &Motion) -> Miss
+    where
+        F: Flight<NX, NU>,
+    {
+        match self.goal {
+            Goal::Motion(goal) => miss(F::MODEL, end, &goal, false),
+            Goal::Hover(goal) => miss(F::MODEL, end, &goal, true),
+            Goal::Circle(orbit, direction) => {
+                let last = solution.states()[solution.states().len() - 1];
+                let [x, y] = orbit.circle.centre;
+                let entry = Entry { angle: (last[1] - y).atan2(last[0] - x), direction };
+                miss(F::MODEL, end, &orbit.at(entry), false)
+            }
+        }
+    }
+}
+
+/// The solution as it stands in the plan, without what only an examination can tell.
+fn record<const NX: usize, const NU: usize, F: Flight<NX, NU>>(solution: &Solution<NX, NU>) -> Transition {
+    Transition {
+        model: F::MODEL,
+        duration: solution.final_time(),
+        length: 0.0,
+        knots: solution.times().to_vec(),
+        states: solution.states().iter().map(|state| state.as_slice().to_vec()).collect(),
+        controls: solution.controls().iter().map(|control| control.as_slice().to_vec()).collect(),
+        control_nodes: solution.transcription().n_local(),
+        status: if solution.status == traj_opt::Status::Solved {
+            SolverStatus::Solved
+        } else {
+            SolverStatus::Acceptable
+        },
+        iterations: solution.iterations,
+        dual_residual: solution.residuals.dual.max(solution.residuals.complementarity),
+        primal_residual: solution.residuals.primal,
+        miss: Miss::default(),
+        max_speed: 0.0,
+        max_tilt: 0.0,
+    }
+}
+
+fn complete(transition: &mut Transition, seen: &Examination, miss: Miss) {
+    transition.length = seen.length;
+    transition.max_speed = seen.max_speed;
+    transition.max_tilt = seen.max_tilt;
+    transition.miss = miss;
+}
+
+fn within(miss: &Miss, tolerance: &Miss) -> bool {
+    miss.position <= tolerance.position
+        && miss.velocity <= tolerance.velocity
+        && miss.attitude <= tolerance.attitude
+}
+
+/// Pushes one keep-out's boundary outwards by what it was entered, and a little more; adds it if it was not considered.
+fn enlarge(keep_outs: &mut Vec<KeepOut>, entered: KeepOut, by: f64) {
+    let margin = by + 0.01;
+    match keep_outs.iter_mut().find(|keep_out| keep_out.centre == entered.centre) {
+        Some(keep_out) => keep_out.radius += margin,
+        None => keep_outs.push(KeepOut { radius: entered.radius + margin, ..entered }),
+    }
+}
+
+/// Height limits drawn in by what was overstepped, but never by more than a tenth of their range.
+fn narrowed(heights: [f64; 2], wanted: [f64; 2], by: f64) -> [f64; 2] {
+    let most = 0.1 * (wanted[1] - wanted[0]);
+    [(heights[0] + by).min(wanted[0] + most), (heights[1] - by).max(wanted[1] - most)]
+}

@@ -1,0 +1,234 @@
+//! Whole missions, planned and then checked by an integration that does not know the solver.
+
+use planner::quad_dynamics::{Vehicle, VehicleParameters};
+use planner::{
+    Entries, Error, Failure, Mission, Model, Options, Outcome, Phase, Pipeline, Plan, Problem, Target,
+    Tolerances, plan,
+};
+
+/// Two vehicles, three targets; few entries, so that a test stays quick.
+fn small(model: Model) -> Mission {
+    let positions = [[12.0, 3.0], [20.0, 14.0], [-6.0, 11.0]];
+    let vehicle = Vehicle::new(VehicleParameters::survey_450()).unwrap();
+    let mut mission = Mission::new(vehicle, 2, positions.map(Target::at).to_vec());
+    mission.transition.model = model;
+    mission.transition.entries = Entries::Sampled(4);
+    mission
+}
+
+fn planned(mission: &Mission) -> Plan {
+    plan(mission, &Options::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn every_model_gives_a_plan_that_stands_verification() {
+    for model in [Model::PointMass, Model::JerkLimited, Model::ThrustRate, Model::RigidBody] {
+        let mission = small(model);
+        let plan = planned(&mission);
+        let verification = plan.verify(&mission, &Tolerances::default());
+        assert!(verification.passed(), "{model:?}: {:?}", verification.failures);
+        assert_eq!(verification.legs.len(), 5, "{model:?}: three circles and two ways home");
+        let certificate = plan.certificate;
+        assert!(certificate.makespan_lower_bound > 0.0 && certificate.total_lower_bound > 0.0);
+        assert!(certificate.makespan >= certificate.makespan_lower_bound);
+        assert!(certificate.total >= certificate.total_lower_bound);
+    }
+}
+
+#[test]
+fn every_candidate_is_accounted_for_and_the_best_is_flown() {
+    let mission = small(Model::ThrustRate);
+    for leg in planned(&mission).vehicles.iter().flat_map(|vehicle| &vehicle.legs) {
+        assert_eq!(leg.candidates.len(), if leg.loiter.is_some() { 8 } else { 1 });
+        let solved = leg.candidates.iter().filter_map(|candidate| match candidate.outcome {
+            Outcome::Solved { duration } => Some(duration),
+            _ => None,
+        });
+        let best = solved.fold(f64::INFINITY, f64::min);
+        assert_eq!(best, leg.transition.duration);
+        for candidate in &leg.candidates {
+            if let Outcome::ProvenWorse { lower_bound } = candidate.outcome {
+                assert!(lower_bound >= best);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_free_entry_is_never_worse_than_the_samples_it_starts_from() {
+    let mut mission = small(Model::ThrustRate);
+    mission.targets.truncate(1);
+    mission.transition.entries = Entries::Sampled(16);
+    let sampled = planned(&mission);
+    mission.transition.entries = Entries::Free;
+    let free = planned(&mission);
+    let first = |plan: &Plan| {
+        let flying = plan.vehicles.iter().find(|vehicle| !vehicle.legs.is_empty()).unwrap();
+        flying.legs[0].transition.duration
+    };
+    assert!(first(&free) <= first(&sampled), "{} against {}", first(&free), first(&sampled));
+    let verification = free.verify(&mission, &Tolerances::default());
+    assert!(verification.passed(), "{:?}", verification.failures);
+}
+
+#[test]
+fn spare_vehicles_stay_on_their_pads() {
+    let mut mission = small(Model::PointMass);
+    mission.fleet.vehicles = 5;
+    let plan = planned(&mission);
+    let flying = plan.vehicles.iter().filter(|vehicle| !vehicle.legs.is_empty()).count();
+    assert!(flying <= 3);
+    let spare = plan.vehicles.iter().position(|vehicle| vehicle.legs.is_empty()).unwrap();
+    let sample = plan.sample(&mission, spare, 3.0).unwrap();
+    assert_eq!((sample.phase, sample.position), (Phase::Pad, plan.vehicles[spare].pad));
+    assert!(plan.verify(&mission, &Tolerances::default()).passed());
+}
+
+#[test]
+fn the_papers_pipeline_and_merged_targets_are_planned() {
+    let mut mission = small(Model::PointMass);
+    mission.pipeline = Pipeline::Paper;
+    mission.targets.push(Target::at([12.5, 3.5]));
+    mission.merge_within = 2.0;
+    let plan = planned(&mission);
+    assert_eq!(plan.circles.len(), 3);
+    let merged = plan.circles.iter().find(|circle| circle.members.len() == 2).unwrap();
+    assert!(merged.radius > mission.loiter.radius);
+    assert!(plan.verify(&mission, &Tolerances::default()).passed());
+}
+
+#[test]
+fn trajectories_are_continuous_from_pad_to_pad() {
+    let mission = small(Model::ThrustRate);
+    let plan = planned(&mission);
+    for (vehicle, planned) in plan.vehicles.iter().enumerate() {
+        let samples = plan.samples(&mission, vehicle, 50.0).unwrap();
+        let (first, last) = (samples[0], samples[samples.len() - 1]);
+        assert!((last.time - planned.duration()).abs() < 1e-9);
+        for axis in 0..3 {
+            assert!((first.position[axis] - planned.pad[axis]).abs() < 1e-9);
+            assert!((last.position[axis] - planned.pad[axis]).abs() < 0.05);
+        }
+        for pair in samples.windows(2) {
+            let speed = pair[0].velocity.iter().chain(&pair[1].velocity).map(|v| v * v).sum::<f64>().sqrt();
+            let step = (0..3)
+                .map(|axis| (pair[1].position[axis] - pair[0].position[axis]).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            assert!(
+                step <= (pair[1].time - pair[0].time) * (speed + 1.0) + 0.02,
+                "a jump at {} s",
+                pair[1].time
+            );
+        }
+    }
+}
+
+/// Verification must be able to fail.
+#[test]
+fn a_tampered_plan_is_caught() {
+    let mission = small(Model::ThrustRate);
+    let plan = planned(&mission);
+    let flying = plan.vehicles.iter().position(|vehicle| vehicle.legs.len() > 1).unwrap();
+    let failures = |plan: &Plan| plan.verify(&mission, &Tolerances::default()).failures;
+
+    let mut weaker = plan.clone();
+    for control in &mut weaker.vehicles[flying].legs[0].transition.controls {
+        control[0] *= 0.95;
+    }
+    assert!(failures(&weaker).iter().any(|failure| matches!(failure, Failure::Miss { leg: 0, .. })));
+
+    let mut stronger = plan.clone();
+    stronger.vehicles[flying].legs[0].transition.controls[3][0] = 40.0;
+    assert!(failures(&stronger).iter().any(|failure| matches!(failure, Failure::Bound { leg: 0, .. })));
+
+    let mut late = plan.clone();
+    late.vehicles[flying].legs[1].start_time += 1.0;
+    assert!(failures(&late).iter().any(|failure| matches!(failure, Failure::Joint { leg: 1, .. })));
+
+    let mut forgetful = plan.clone();
+    forgetful.vehicles[flying].legs.clear();
+    forgetful.vehicles[flying].route.clear();
+    assert!(failures(&forgetful).iter().any(|failure| matches!(failure, Failure::Coverage { times: 0, .. })));
+
+    let mut ragged = plan.clone();
+    ragged.vehicles[flying].legs[0].transition.states[1].pop();
+    assert!(failures(&ragged).iter().any(|failure| matches!(failure, Failure::Joint { leg: 0, .. })));
+
+    let mut boastful = plan;
+    boastful.certificate.makespan = 0.5 * boastful.certificate.makespan_lower_bound;
+    assert!(failures(&boastful).iter().any(|failure| matches!(failure, Failure::Certificate { .. })));
+}
+
+#[test]
+fn the_same_mission_gives_the_same_plan_to_the_bit() {
+    let mission = small(Model::ThrustRate);
+    let text = |plan: &Plan| format!("{:?}", plan.vehicles);
+    assert_eq!(text(&planned(&mission)), text(&planned(&mission)));
+}
+
+#[test]
+fn a_caller_can_stop_the_planning() {
+    let mission = small(Model::ThrustRate);
+    let stop = || true;
+    let outcome = plan(&mission, &Options::default().with_should_stop(&stop));
+    assert!(matches!(outcome, Err(Error::Stopped)));
+}
+
+#[test]
+fn progress_counts_every_candidate_once() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let (greatest, total) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let progress = |progress: planner::Progress| {
+        greatest.fetch_max(progress.done, Ordering::Relaxed);
+        total.store(progress.total, Ordering::Relaxed);
+    };
+    let mission = small(Model::PointMass);
+    plan(&mission, &Options::default().with_progress(&progress)).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(greatest.into_inner(), total.into_inner());
+}
+
+#[test]
+fn problems_are_listed_together_and_nothing_is_planned() {
+    let mut mission = small(Model::ThrustRate);
+    mission.fleet.vehicles = 0;
+    mission.loiter.radius = f64::NAN;
+    mission.transition.segments = 1;
+    mission.targets[1].position[0] = f64::INFINITY;
+    let Err(Error::Mission { problems }) = plan(&mission, &Options::default()) else { panic!("planned") };
+    let fields: Vec<&str> = problems.iter().map(Problem::field).collect();
+    for field in ["fleet.vehicles", "loiter.radius", "transition.segments", "targets.positions[1]"] {
+        assert!(fields.contains(&field), "{field} is missing from {fields:?}");
+    }
+}
+
+#[test]
+fn impossible_geometry_and_budgets_are_named() {
+    let problems = |change: &dyn Fn(&mut Mission)| {
+        let mut mission = small(Model::ThrustRate);
+        change(&mut mission);
+        mission.problems()
+    };
+    assert!(problems(&|_| {}).is_empty());
+    assert!(matches!(problems(&|m| m.loiter.thrust_budget = 0.4)[..], [Problem::Loiter { .. }]));
+    assert!(matches!(
+        problems(&|m| m.depot = [12.5, 3.0])[..],
+        [Problem::DepotTooClose { target: 0, .. }, ..]
+    ));
+    let close = problems(&|m| m.targets.push(Target::at([14.0, 3.0])));
+    assert!(matches!(close[..], [Problem::TargetsTooClose { first: 0, second: 3, .. }, ..]), "{close:?}");
+    assert!(matches!(
+        problems(&|m| m.transition.thrust_budget = 0.55)[..],
+        [Problem::TransitionBudget { .. }]
+    ));
+    assert!(
+        problems(&|m| m.transition.heights = [2.0, 30.0])
+            .iter()
+            .all(|p| matches!(p, Problem::HeightOutsideLimits { .. }))
+    );
+    assert!(matches!(
+        problems(&|m| m.targets[2].safe_distance = Some(4.0))[..],
+        [Problem::CircleInsideSafeDistance { target: 2, .. }, ..]
+    ));
+    assert!(matches!(problems(&|m| m.targets.clear())[..], [Problem::NoTargets]));
+}
