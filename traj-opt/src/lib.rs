@@ -14,12 +14,14 @@
 mod autodiff;
 mod bounds;
 mod check;
+mod dense;
 mod dynamics;
 mod error;
 mod guess;
 mod integrate;
 mod interpolate;
 mod mesh;
+mod nlp;
 mod options;
 mod problem;
 mod solution;

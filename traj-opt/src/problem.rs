@@ -85,6 +85,11 @@ pub trait Problem<const NX: usize, const NU: usize> {
         (0.0, 0.0)
     }
 
+    /// True if running cost and path functions do not depend on time; saves derivatives. Default: false (always safe).
+    fn is_autonomous(&self) -> bool {
+        false
+    }
+
     /// Typical magnitudes of the variables; default: taken from the bounds and the guess.
     fn scales(&self) -> Option<Scales<NX, NU>> {
         None

@@ -1,9 +1,11 @@
 //! The entry points of the solver.
 
 use crate::interpolate::Nodes;
+use crate::nlp::interior_point::{Memory, Outcome};
+use crate::nlp::program::Program;
+use crate::nlp::{runge_kutta, setup};
 use crate::{
-    Dynamics, Error, Guess, Iteration, Mesh, Multipliers, Options, Problem, Residuals, Solution, Status,
-    Transcription,
+    Dynamics, Error, Guess, Iteration, Mesh, Multipliers, Options, Problem, Solution, Transcription,
 };
 use nalgebra::SVector;
 use std::ops::ControlFlow;
@@ -11,8 +13,7 @@ use std::ops::ControlFlow;
 /// Memory of a solve, to be reused: no allocation after the first solve of a given shape, except for the solution itself.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace<const NX: usize, const NU: usize> {
-    states: Vec<SVector<f64, NX>>,
-    controls: Vec<SVector<f64, NU>>,
+    memory: Memory<NX, NU>,
 }
 
 impl<const NX: usize, const NU: usize> Workspace<NX, NU> {
@@ -35,9 +36,7 @@ pub fn solve<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     guess: &Guess<NX, NU>,
     options: &Options,
 ) -> Result<Solution<NX, NU>, Error> {
-    solve_with(&mut Workspace::new(), problem, mesh, transcription, guess, options, |_| {
-        ControlFlow::Continue(())
-    })
+    solve_with(&mut Workspace::new(), problem, mesh, transcription, guess, options, |_| ControlFlow::Continue(()))
 }
 
 /// [`solve`] with a reusable workspace and a monitor that sees every iteration and may stop the solve by returning
@@ -52,41 +51,94 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     transcription: Transcription,
     guess: &Guess<NX, NU>,
     options: &Options,
-    mut _monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
+    monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
 ) -> Result<Solution<NX, NU>, Error> {
     options.validate()?;
     let bounds = problem.bounds();
+    setup::validate(problem, &bounds)?;
     guess.validate(bounds.initial_time)?;
-    let (t0, tf) = (bounds.initial_time, guess.final_time());
-    let times: Vec<f64> = mesh.fractions().iter().map(|f| t0 + f * (tf - t0)).collect();
-    workspace.states.clear();
-    workspace.controls.clear();
-    let fractions = mesh.fractions();
+    let transcription = match transcription {
+        Transcription::RungeKutta { substeps } => Transcription::RungeKutta { substeps: substeps.max(1) },
+        other => other,
+    };
+    let scales = problem.scales().unwrap_or_else(|| setup::default_scales(&bounds, guess));
+    let free_time = bounds.final_time_lower != bounds.final_time_upper;
+    let program = Program { problem, mesh, transcription, bounds, scales, free_time };
+    let memory = &mut workspace.memory;
+    memory.start(&program, guess, options);
+    let outcome = memory.run(&program, options, monitor);
+    Ok(extract(&program, memory, &outcome))
+}
+
+/// Builds the solution from the last iterate.
+fn extract<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    program: &Program<NX, NU, P>,
+    memory: &Memory<NX, NU>,
+    outcome: &Outcome,
+) -> Solution<NX, NU> {
+    let layout = &memory.layout;
+    let n = layout.n_segments;
+    let w = &memory.w;
+    let n_local = program.transcription.n_local();
+    let tf = w[layout.time];
+    Solution {
+        status: outcome.status,
+        objective: memory.values.objective,
+        iterations: outcome.iterations,
+        residuals: outcome.residuals,
+        multipliers: Multipliers {
+            defects: memory.duals.defect.clone(),
+            boundary: memory.duals.boundary.clone(),
+        },
+        log: memory.log.clone(),
+        transcription: program.transcription,
+        mesh: program.mesh.clone(),
+        times: program.mesh.fractions().iter().map(|&f| program.time_at(f, tf)).collect(),
+        states: (0..=n).map(|k| program.state(layout, w, k)).collect(),
+        controls: (0..n * n_local).map(|i| program.control(layout, w, i / n_local, i % n_local)).collect(),
+        nodes: nodes(program, memory),
+    }
+}
+
+/// States and slopes between which the state is interpolated.
+fn nodes<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    program: &Program<NX, NU, P>,
+    memory: &Memory<NX, NU>,
+) -> Nodes<NX> {
+    let (layout, w) = (&memory.layout, &memory.w);
+    let tf = w[layout.time];
     let mut nodes = Nodes::default();
-    for (k, &s) in fractions.iter().enumerate() {
-        workspace.states.push(guess.sample(s).0);
-        nodes.times.push(times[k]);
-        nodes.states.push(guess.sample(s).0);
-        if k + 1 < fractions.len() {
-            for &c in transcription.control_points() {
-                workspace.controls.push(guess.sample(s + c * (fractions[k + 1] - s)).1);
+    let slope = |t, x: &SVector<f64, NX>, k, local| {
+        program.problem.dynamics().derivative(t, x, &program.control(layout, w, k, local))
+    };
+    nodes.times.push(program.time_at(0.0, tf));
+    nodes.states.push(program.state(layout, w, 0));
+    for k in 0..layout.n_segments {
+        let end = program.time_at(program.mesh.fractions()[k + 1], tf);
+        let mut push = |t: f64, x: SVector<f64, NX>, locals: [usize; 2]| {
+            let (t0, x0) = (nodes.times[nodes.times.len() - 1], nodes.states[nodes.states.len() - 1]);
+            nodes.slopes.push([slope(t0, &x0, k, locals[0]), slope(t, &x, k, locals[1])]);
+            nodes.times.push(t);
+            nodes.states.push(x);
+        };
+        let next = program.state(layout, w, k + 1);
+        match program.transcription {
+            Transcription::RungeKutta { substeps } => {
+                let mut count = 0;
+                runge_kutta::step_states(program, layout, substeps, k, w, |t, x| {
+                    count += 1;
+                    let last = count == substeps;
+                    push(if last { end } else { t }, if last { next } else { x }, [0, 0]);
+                });
             }
-            let slope = problem.dynamics().derivative(times[k], &guess.sample(s).0, &guess.sample(s).1);
-            nodes.slopes.push([slope; 2]);
+            Transcription::Trapezoidal => push(end, next, [0, 1]),
+            Transcription::HermiteSimpson => {
+                let at = layout.middle(k);
+                let middle = program.point_time(k, 0.5, tf).time;
+                push(middle, SVector::from_column_slice(&w[at..at + NX]), [0, 1]);
+                push(end, next, [1, 2]);
+            }
         }
     }
-    Ok(Solution {
-        status: Status::IterationLimit,
-        objective: tf,
-        iterations: 0,
-        residuals: Residuals { primal: f64::INFINITY, dual: f64::INFINITY, complementarity: f64::INFINITY },
-        multipliers: Multipliers::default(),
-        log: vec![],
-        transcription,
-        mesh: mesh.clone(),
-        times,
-        states: workspace.states.clone(),
-        controls: workspace.controls.clone(),
-        nodes,
-    })
+    nodes
 }

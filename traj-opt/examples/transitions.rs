@@ -1,0 +1,89 @@
+//! Solves the fifty reference transitions and prints a row each.
+//!
+//! `cargo run --release -p traj-opt --example transitions -- [A|B] [rk|trap|hs] [SEGMENTS] [ID]`
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::quadcopter::*;
+use nalgebra::SVector;
+use std::ops::ControlFlow;
+use std::time::Instant;
+use traj_opt::{Dynamics, IntegrateOptions, Mesh, Options, Transcription, Workspace, solve_with};
+
+fn main() {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let get = |i: usize, default: &str| args.get(i).cloned().unwrap_or_else(|| default.to_string());
+    let (model, scheme) = (get(0, "A"), get(1, "rk"));
+    let segments: usize = get(2, "40").parse().unwrap_or(40);
+    let only: Option<usize> = args.get(3).and_then(|v| v.parse().ok());
+    let transcription = match scheme.as_str() {
+        "trap" => Transcription::Trapezoidal,
+        "hs" => Transcription::HermiteSimpson,
+        "rk1" => Transcription::RungeKutta { substeps: 1 },
+        "rk4" => Transcription::RungeKutta { substeps: 4 },
+        _ => Transcription::RungeKutta { substeps: 2 },
+    };
+    let mut rows = vec![];
+    let mut workspace_a = Workspace::new();
+    let mut workspace_b = Workspace::new();
+    for r in references().iter().filter(|r| only.is_none_or(|id| id == r.id)) {
+        let row = if model == "A" {
+            let t = thrust_rate(&r.start, &r.end);
+            run(&mut workspace_a, &t, hover_thrust_rate(), r, r.time_thrust_rate, segments, transcription, only.is_some())
+        } else {
+            let t = rigid_body(&r.start, &r.end);
+            run(&mut workspace_b, &t, hover_rigid_body(), r, r.time_rigid_body, segments, transcription, only.is_some())
+        };
+        rows.push(row);
+    }
+    let mut times: Vec<f64> = rows.iter().map(|r| r.1).collect();
+    times.sort_by(f64::total_cmp);
+    let solved = rows.iter().filter(|r| r.0).count();
+    let mut iterations: Vec<usize> = rows.iter().map(|r| r.2).collect();
+    iterations.sort_unstable();
+    println!(
+        "solved {solved} of {}; median {:.2} ms, 95th {:.2} ms, median iterations {}",
+        rows.len(),
+        times[times.len() / 2],
+        times[times.len() * 95 / 100],
+        iterations[iterations.len() / 2]
+    );
+}
+
+#[allow(clippy::too_many_arguments)]
+fn run<D: Dynamics<NX, 4>, const NX: usize>(
+    workspace: &mut Workspace<NX, 4>,
+    t: &Transition<D, NX>,
+    hover: SVector<f64, 4>,
+    r: &Reference,
+    reference: f64,
+    segments: usize,
+    transcription: Transcription,
+    verbose: bool,
+) -> (bool, f64, usize) {
+    let guess = naive_guess(t, hover);
+    let mesh = Mesh::uniform(segments);
+    let begin = Instant::now();
+    let monitor = |i: &traj_opt::Iteration| {
+        if verbose {
+            println!(
+                "{:4} f {:.6} primal {:.2e} dual {:.2e} compl {:.2e} mu {:.1e} reg {:.1e} alpha {:.2e}",
+                i.iteration, i.objective, i.residuals.primal, i.residuals.dual, i.residuals.complementarity, i.mu,
+                i.regularisation, i.step_length
+            );
+        }
+        ControlFlow::Continue(())
+    };
+    let s = solve_with(workspace, t, &mesh, transcription, &guess, &Options::default(), monitor).expect("valid input");
+    let ms = begin.elapsed().as_secs_f64() * 1e3;
+    let end = s.integrate(t.dynamics(), &IntegrateOptions::default()).map(|x| *x.end_state());
+    let [p, v, a] = end.map_or([f64::NAN; 3], |x| miss(&x, &t.end));
+    println!(
+        "{:2} {:10} tf {:.5} ({:+.3} %) iter {:3} {:7.2} ms  miss {:.4} m {:.4} m/s {:.3} deg  kkt {:.1e} {:.1e} {:.1e}",
+        r.id, s.status.to_string(), s.objective, 100.0 * (s.objective / reference - 1.0), s.iterations, ms, p, v,
+        a.to_degrees(), s.residuals.primal, s.residuals.dual, s.residuals.complementarity
+    );
+    (s.status.is_success(), ms, s.iterations)
+}
+use traj_opt::Problem;

@@ -1,0 +1,394 @@
+//! The primal-dual interior-point method with filter line search (A. Waechter, L. T. Biegler, Math. Program. 106, 2006) on the
+//! stage-structured problem.
+
+use super::barrier::{Box, DEFAULT_PUSH};
+use super::boundary::BoundaryRows;
+use super::filter::{Filter, Origin};
+use super::kkt::{Direction, System};
+use super::layout::Layout;
+use super::program::{Duals, Linearisation, Program, Scratch, Values};
+use super::quadratic::{Quadratic, Rhs, Step};
+use super::riccati::{NotConvex, Regularisation, Riccati};
+use super::setup;
+use crate::{Guess, Iteration, Options, Problem, Residuals, Status};
+use nalgebra::SVector;
+use std::ops::ControlFlow;
+
+/// Factor of the barrier error below which mu falls (kappa_epsilon), linear and superlinear decrease (kappa_mu, theta_mu), least
+/// fraction to the boundary (tau_min) and scaling threshold of residuals (s_max), all as in IPOPT.
+const KAPPA_EPSILON: f64 = 10.0;
+const KAPPA_MU: f64 = 0.2;
+const THETA_MU: f64 = 1.5;
+const TAU_MIN: f64 = 0.99;
+const S_MAX: f64 = 100.0;
+/// Penalty on end conditions in the recursion, relative to the scaled length of their gradients.
+const RHO: f64 = 1e3;
+/// Relaxation of bounds.
+const RELAX: f64 = 1e-8;
+
+/// All memory of a solve.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Memory<const NX: usize, const NU: usize> {
+    pub layout: Layout,
+    pub rows: BoundaryRows,
+    pub w: Vec<f64>,
+    pub trial: Vec<f64>,
+    pub bounds: Box,
+    pub duals: Duals<NX>,
+    pub values: Values<NX>,
+    pub trial_values: Values<NX>,
+    pub corrected: Values<NX>,
+    pub lin: Linearisation<NX, NU>,
+    pub lq: Quadratic<NX>,
+    pub rhs: Rhs<NX>,
+    pub step: Step<NX>,
+    pub direction: Direction<NX>,
+    pub correction: Direction<NX>,
+    pub riccati: Riccati<NX>,
+    pub scratch: Scratch<NX, NU>,
+    pub filter: Filter,
+    pub variable_scale: Vec<f64>,
+    pub path_scale: Vec<f64>,
+    pub boundary_scale: Vec<f64>,
+    pub control_weight: Vec<f64>,
+    pub free_start: Vec<usize>,
+    pub log: Vec<Iteration>,
+    pub states: StateScale<NX>,
+    pub time_weight: f64,
+    /// Last regularisation that was needed.
+    pub delta: f64,
+    pub objective_scale: f64,
+    pub mu: f64,
+}
+
+/// Magnitudes of the states and their inverse squares.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StateScale<const NX: usize> {
+    pub scale: SVector<f64, NX>,
+    pub weight: SVector<f64, NX>,
+}
+
+impl<const NX: usize> Default for StateScale<NX> {
+    fn default() -> Self {
+        Self { scale: SVector::repeat(1.0), weight: SVector::repeat(1.0) }
+    }
+}
+
+/// How a solve ended.
+pub(crate) struct Outcome {
+    pub status: Status,
+    pub iterations: usize,
+    pub residuals: Residuals,
+}
+
+impl<const NX: usize, const NU: usize> Memory<NX, NU> {
+    /// Sizes everything for a program and sets the starting point.
+    pub fn start<P: Problem<NX, NU>>(
+        &mut self,
+        program: &Program<NX, NU, P>,
+        guess: &Guess<NX, NU>,
+        options: &Options,
+    ) {
+        self.rows.rebuild(program.problem, &program.bounds);
+        let n_path = program.problem.n_path();
+        self.layout.rebuild((NX, NU), program.mesh, program.transcription, n_path, self.rows.n_slacks);
+        let (n, m, nb) = (self.layout.n_segments, self.layout.m, self.rows.len());
+        self.values.resize(&self.layout, nb);
+        self.trial_values.resize(&self.layout, nb);
+        self.corrected.resize(&self.layout, nb);
+        self.duals.reset(&self.layout, nb);
+        self.direction.duals.reset(&self.layout, nb);
+        self.correction.duals.reset(&self.layout, nb);
+        for v in [&mut self.trial, &mut self.direction.w, &mut self.correction.w] {
+            v.clear();
+            v.resize(self.layout.n_variables, 0.0);
+        }
+        let implicit = !matches!(program.transcription, crate::Transcription::RungeKutta { .. });
+        self.lin.resize(&self.layout, nb, implicit);
+        self.lq.resize(n, m, nb);
+        self.rhs.resize(n, m, nb);
+        self.step.resize(n, m, nb);
+        setup::free_start(&program.bounds, &mut self.free_start);
+        self.riccati.resize(n, m, nb, &self.free_start, program.free_time);
+        self.scratch.resize(n_path.max(self.rows.n_functions));
+        self.log.clear();
+        self.log.reserve(options.max_iterations + 1);
+        self.set_scales(program);
+        setup::fill_bounds(program, &self.layout, &self.rows, &mut self.bounds);
+        self.bounds.relax(RELAX);
+        setup::fill_guess(program, &self.layout, guess, &mut self.w);
+        self.bounds.push_inside(&mut self.w, DEFAULT_PUSH);
+        self.delta = 0.0;
+        self.mu = options.initial_mu;
+        self.place_slacks(program);
+        self.bounds.start_multipliers(&self.w, self.mu);
+    }
+
+    fn set_scales<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {
+        setup::variable_scales(program, &self.layout, &mut self.variable_scale);
+        let s = &program.scales;
+        self.states = StateScale { scale: s.state, weight: s.state.map(|v| 1.0 / (v * v)) };
+        self.time_weight = 1.0 / (s.time * s.time);
+        self.control_weight.clear();
+        self.control_weight.extend((0..self.layout.m).map(|j| 1.0 / s.control[j % NU.max(1)].powi(2)));
+    }
+
+    /// Slacks at the values of their constraints, inside the bounds; scales of path and boundary rows from their gradients.
+    fn place_slacks<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {
+        let layout = &self.layout;
+        program.evaluate(layout, &self.rows, &self.w, &mut self.scratch, &mut self.values);
+        for i in 0..self.values.path.len() {
+            self.w[layout.path_slacks + i] = self.values.path[i];
+        }
+        for (row, slack) in self.rows.slack.iter().enumerate() {
+            if let Some(slack) = slack {
+                self.w[layout.boundary_slacks + slack] = self.values.boundary[row];
+            }
+        }
+        self.bounds.push_inside(&mut self.w, DEFAULT_PUSH);
+        program.evaluate(layout, &self.rows, &self.w, &mut self.scratch, &mut self.values);
+        program.linearise(layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
+        let n = layout.n_path;
+        let scales = &program.scales;
+        self.path_scale.clear();
+        self.path_scale.resize(n, 1e-2);
+        for (i, (gx, gu)) in self.lin.path_x.iter().zip(&self.lin.path_u).enumerate() {
+            let size = gx.component_mul(&scales.state).amax().max(gu.component_mul(&scales.control).amax());
+            self.path_scale[i % n] = self.path_scale[i % n].max(size);
+        }
+        for i in layout.path_slacks..layout.boundary_slacks {
+            self.variable_scale[i] = self.path_scale[(i - layout.path_slacks) % n];
+        }
+        self.boundary_scale.clear();
+        for row in 0..self.rows.len() {
+            let size = |v: &SVector<f64, NX>| v.component_mul(&scales.state).amax();
+            let ends = size(&self.lin.raw.e0[row]).max(size(&self.lin.raw.ef[row]));
+            let scale = ends.max(self.lin.raw.et[row].abs() * scales.time).max(1e-2);
+            self.boundary_scale.push(scale);
+            if let Some(slack) = self.rows.slack.get(row).copied().flatten() {
+                self.variable_scale[layout.boundary_slacks + slack] = scale;
+            }
+        }
+        let gradient = self.lin.objective.iter().zip(&self.variable_scale).map(|(g, s)| (g * s).abs());
+        self.objective_scale = gradient.fold(1.0, f64::max);
+    }
+
+    /// Scaled 1-norm of the constraint violation.
+    pub fn theta(&self, values: &Values<NX>) -> f64 {
+        let mut sum = 0.0;
+        for v in values.defect.iter().chain(&values.middle) {
+            for i in 0..NX {
+                sum += v[i].abs() / self.states.scale[i];
+            }
+        }
+        for (i, v) in values.path.iter().enumerate() {
+            sum += v.abs() / self.path_scale[i % self.layout.n_path];
+        }
+        for (v, s) in values.boundary.iter().zip(&self.boundary_scale) {
+            sum += v.abs() / s;
+        }
+        sum
+    }
+
+    /// Scaled greatest violation.
+    pub fn primal_residual(&self, values: &Values<NX>) -> f64 {
+        let mut worst: f64 = 0.0;
+        for v in values.defect.iter().chain(&values.middle) {
+            for i in 0..NX {
+                worst = worst.max(v[i].abs() / self.states.scale[i]);
+            }
+        }
+        for (i, v) in values.path.iter().enumerate() {
+            worst = worst.max(v.abs() / self.path_scale[i % self.layout.n_path]);
+        }
+        for (v, s) in values.boundary.iter().zip(&self.boundary_scale) {
+            worst = worst.max(v.abs() / s);
+        }
+        worst
+    }
+
+    /// Scaled greatest entry of the Lagrangian's gradient, bound multipliers included.
+    pub fn dual_residual(&self) -> f64 {
+        let mut worst: f64 = 0.0;
+        for i in 0..self.w.len() {
+            let r = self.lin.lagrangian[i] - self.bounds.z_lower[i] + self.bounds.z_upper[i];
+            worst = worst.max((r * self.variable_scale[i]).abs());
+        }
+        worst / self.objective_scale
+    }
+
+    /// KKT residuals with the barrier parameter `mu` and IPOPT's scaling by the size of the multipliers.
+    pub fn residuals(&self, mu: f64) -> Residuals {
+        let (sum, count) = self.bounds.multiplier_sum();
+        let mean = if count > 0 { sum / count as f64 } else { 0.0 };
+        let scale = mean.max(S_MAX) / S_MAX;
+        Residuals {
+            primal: self.primal_residual(&self.values),
+            dual: self.dual_residual() / scale,
+            complementarity: self.bounds.complementarity(&self.w, mu) / (scale * self.objective_scale),
+        }
+    }
+
+    /// Barrier cost of a point.
+    pub fn phi(&self, w: &[f64], values: &Values<NX>) -> f64 {
+        values.objective + self.bounds.value(w, self.mu)
+    }
+
+    /// Runs to the end.
+    pub fn run<P: Problem<NX, NU>>(
+        &mut self,
+        program: &Program<NX, NU, P>,
+        options: &Options,
+        mut monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
+    ) -> Outcome {
+        self.filter.start(self.theta(&self.values));
+        let mut step_length = 1.0;
+        let mut acceptable = 0;
+        for iteration in 0..=options.max_iterations {
+            program.linearise(&self.layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
+            let residuals = self.residuals(0.0);
+            let entry = Iteration {
+                iteration,
+                objective: self.values.objective,
+                residuals,
+                mu: self.mu,
+                regularisation: self.delta,
+                step_length,
+            };
+            self.log.push(entry);
+            let finish = |status| Outcome { status, iterations: iteration, residuals };
+            let worst = worst_of(&residuals);
+            if worst <= options.tolerance {
+                return finish(Status::Solved);
+            }
+            acceptable = if worst <= options.acceptable_tolerance { acceptable + 1 } else { 0 };
+            if acceptable >= 15 {
+                return finish(Status::Acceptable);
+            }
+            let fallback = |status| if acceptable > 0 { Status::Acceptable } else { status };
+            if monitor(&entry).is_break() {
+                return finish(Status::Stopped);
+            }
+            if iteration == options.max_iterations {
+                return finish(fallback(Status::IterationLimit));
+            }
+            self.update_barrier(options);
+            if self.newton_direction(program.free_time).is_err() {
+                return finish(fallback(Status::Stalled));
+            }
+            match self.advance(program) {
+                Some(alpha) => step_length = alpha,
+                None if self.restore(program) => step_length = 0.0,
+                None if acceptable > 0 => return finish(Status::Acceptable),
+                None if residuals.primal > options.acceptable_tolerance => return finish(Status::Infeasible),
+                None => return finish(Status::Stalled),
+            }
+        }
+        unreachable_outcome()
+    }
+
+    /// Monotone decrease of mu (Fiacco and McCormick) once the barrier problem is solved well enough.
+    fn update_barrier(&mut self, options: &Options) {
+        let least = options.tolerance / 10.0 * self.objective_scale;
+        while self.mu > least && worst_of(&self.residuals(self.mu)) <= KAPPA_EPSILON * self.mu / self.objective_scale {
+            self.mu = (KAPPA_MU * self.mu).min(self.mu.powf(THETA_MU)).max(least);
+            self.filter.clear();
+        }
+    }
+
+    /// Fraction to the boundary.
+    pub fn tau(&self) -> f64 {
+        TAU_MIN.max(1.0 - self.mu)
+    }
+
+    pub fn regularisation(&self, delta: f64) -> Regularisation<'_, NX> {
+        Regularisation {
+            delta,
+            delta_c: 0.0,
+            rho: RHO,
+            state_weight: &self.states.weight,
+            control_weight: &self.control_weight,
+            time_weight: self.time_weight,
+        }
+    }
+
+    /// Factorises with as little regularisation as convexity needs (IPOPT's algorithm IC) and computes the direction.
+    fn newton_direction(&mut self, free_time: bool) -> Result<(), NotConvex> {
+        let _ = free_time;
+        let system = System {
+            layout: &self.layout,
+            rows: &self.rows,
+            lin: &self.lin,
+            w: &self.w,
+            bounds: &self.bounds,
+            duals: &self.duals,
+            mu: self.mu,
+        };
+        system.assemble(&mut self.lq);
+        system.right_hand_side(&self.values, &mut self.rhs);
+        let mut riccati = std::mem::take(&mut self.riccati);
+        let factorised = self.factorise(&mut riccati);
+        self.riccati = riccati;
+        factorised?;
+        self.solve_for_direction()
+    }
+
+    fn factorise(&mut self, riccati: &mut Riccati<NX>) -> Result<(), NotConvex> {
+        if riccati.factorise(&self.lq, &self.regularisation(0.0)).is_ok() {
+            self.delta = 0.0_f64.max(self.delta * 0.0);
+            return Ok(());
+        }
+        let mut delta = if self.last_delta() > 0.0 { (self.last_delta() / 3.0).max(1e-20) } else { 1e-4 };
+        let growth = if self.last_delta() > 0.0 { 8.0 } else { 100.0 };
+        while delta < 1e40 {
+            if riccati.factorise(&self.lq, &self.regularisation(delta)).is_ok() {
+                self.delta = delta;
+                return Ok(());
+            }
+            delta *= growth;
+        }
+        Err(NotConvex)
+    }
+
+    /// The last regularisation that was not zero.
+    fn last_delta(&self) -> f64 {
+        self.log.iter().rev().map(|e| e.regularisation).find(|d| *d > 0.0).unwrap_or(0.0)
+    }
+
+    fn solve_for_direction(&mut self) -> Result<(), NotConvex> {
+        self.riccati.solve(&self.lq, &self.states.weight, &self.rhs, &mut self.step);
+        let system = System {
+            layout: &self.layout,
+            rows: &self.rows,
+            lin: &self.lin,
+            w: &self.w,
+            bounds: &self.bounds,
+            duals: &self.duals,
+            mu: self.mu,
+        };
+        system.expand(&self.values, &self.step, &mut self.direction);
+        self.bounds.directions(&self.w, &self.direction.w, self.mu);
+        if self.direction.w.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(NotConvex) }
+    }
+
+    /// Violation, barrier cost and its slope along the direction.
+    pub fn origin(&self) -> Origin {
+        let mut slope = 0.0;
+        for i in 0..self.w.len() {
+            slope += (self.lin.objective[i] + self.bounds.gradient(&self.w, i, self.mu)) * self.direction.w[i];
+        }
+        Origin { theta: self.theta(&self.values), phi: self.phi(&self.w, &self.values), slope }
+    }
+}
+
+fn worst_of(r: &Residuals) -> f64 {
+    let worst = r.primal.max(r.dual).max(r.complementarity);
+    if r.primal.is_nan() || r.dual.is_nan() || r.complementarity.is_nan() { f64::INFINITY } else { worst }
+}
+
+/// The loop above always returns from inside; this is its formal end.
+fn unreachable_outcome() -> Outcome {
+    let infinite = f64::INFINITY;
+    let residuals = Residuals { primal: infinite, dual: infinite, complementarity: infinite };
+    Outcome { status: Status::IterationLimit, iterations: 0, residuals }
+}

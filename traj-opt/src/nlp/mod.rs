@@ -1,0 +1,22 @@
+//! The transcribed problem and its interior-point solver.
+//!
+//! `layout` numbers the variables, `program` evaluates and differentiates the transcribed problem segment by segment,
+//! `riccati` solves the linear-quadratic subproblem, `barrier` treats bounds, `filter` and `interior_point` are the method.
+
+pub(crate) mod barrier;
+pub(crate) mod boundary;
+pub(crate) mod filter;
+pub(crate) mod hermite_simpson;
+pub(crate) mod interior_point;
+pub(crate) mod kkt;
+pub(crate) mod layout;
+pub(crate) mod line_search;
+pub(crate) mod path;
+pub(crate) mod program;
+pub(crate) mod quadratic;
+pub(crate) mod restoration;
+pub(crate) mod riccati;
+pub(crate) mod runge_kutta;
+pub(crate) mod running;
+pub(crate) mod setup;
+pub(crate) mod trapezoidal;
