@@ -30,10 +30,28 @@ fn main() {
     for r in references().iter().filter(|r| only.is_none_or(|id| id == r.id)) {
         let row = if model == "A" {
             let t = thrust_rate(&r.start, &r.end);
-            run(&mut workspace_a, &t, hover_thrust_rate(), r, r.time_thrust_rate, segments, transcription, only.is_some())
+            run(
+                &mut workspace_a,
+                &t,
+                hover_thrust_rate(),
+                r,
+                r.time_thrust_rate,
+                segments,
+                transcription,
+                only.is_some(),
+            )
         } else {
             let t = rigid_body(&r.start, &r.end);
-            run(&mut workspace_b, &t, hover_rigid_body(), r, r.time_rigid_body, segments, transcription, only.is_some())
+            run(
+                &mut workspace_b,
+                &t,
+                hover_rigid_body(),
+                r,
+                r.time_rigid_body,
+                segments,
+                transcription,
+                only.is_some(),
+            )
         };
         rows.push(row);
     }
@@ -64,25 +82,43 @@ fn run<D: Dynamics<NX, 4>, const NX: usize>(
 ) -> (bool, f64, usize) {
     let guess = naive_guess(t, hover);
     let mesh = Mesh::uniform(segments);
+    let tolerance = std::env::var("TOL").ok().and_then(|v| v.parse().ok()).unwrap_or(1e-8);
+    let options = Options::default().with_tolerance(tolerance);
     let begin = Instant::now();
     let monitor = |i: &traj_opt::Iteration| {
         if verbose {
             println!(
                 "{:4} f {:.6} primal {:.2e} dual {:.2e} compl {:.2e} mu {:.1e} reg {:.1e} alpha {:.2e}",
-                i.iteration, i.objective, i.residuals.primal, i.residuals.dual, i.residuals.complementarity, i.mu,
-                i.regularisation, i.step_length
+                i.iteration,
+                i.objective,
+                i.residuals.primal,
+                i.residuals.dual,
+                i.residuals.complementarity,
+                i.mu,
+                i.regularisation,
+                i.step_length
             );
         }
         ControlFlow::Continue(())
     };
-    let s = solve_with(workspace, t, &mesh, transcription, &guess, &Options::default(), monitor).expect("valid input");
+    let s = solve_with(workspace, t, &mesh, transcription, &guess, &options, monitor).expect("valid input");
     let ms = begin.elapsed().as_secs_f64() * 1e3;
     let end = s.integrate(t.dynamics(), &IntegrateOptions::default()).map(|x| *x.end_state());
     let [p, v, a] = end.map_or([f64::NAN; 3], |x| miss(&x, &t.end));
     println!(
         "{:2} {:10} tf {:.5} ({:+.3} %) iter {:3} {:7.2} ms  miss {:.4} m {:.4} m/s {:.3} deg  kkt {:.1e} {:.1e} {:.1e}",
-        r.id, s.status.to_string(), s.objective, 100.0 * (s.objective / reference - 1.0), s.iterations, ms, p, v,
-        a.to_degrees(), s.residuals.primal, s.residuals.dual, s.residuals.complementarity
+        r.id,
+        s.status.to_string(),
+        s.objective,
+        100.0 * (s.objective / reference - 1.0),
+        s.iterations,
+        ms,
+        p,
+        v,
+        a.to_degrees(),
+        s.residuals.primal,
+        s.residuals.dual,
+        s.residuals.complementarity
     );
     (s.status.is_success(), ms, s.iterations)
 }

@@ -54,7 +54,10 @@ pub(crate) fn mul<const R: usize, const K: usize, const C: usize>(
 
 /// `a x`.
 #[inline]
-pub(crate) fn mul_vec<const R: usize, const K: usize>(a: &Matrix<R, K>, x: &SVector<f64, K>) -> SVector<f64, R> {
+pub(crate) fn mul_vec<const R: usize, const K: usize>(
+    a: &Matrix<R, K>,
+    x: &SVector<f64, K>,
+) -> SVector<f64, R> {
     let mut out = SVector::zeros();
     for k in 0..K {
         axpy(array_mut(&mut out), x[k], &a.data.0[k]);
@@ -64,7 +67,10 @@ pub(crate) fn mul_vec<const R: usize, const K: usize>(a: &Matrix<R, K>, x: &SVec
 
 /// `a' x`.
 #[inline]
-pub(crate) fn tr_mul_vec<const R: usize, const K: usize>(a: &Matrix<K, R>, x: &SVector<f64, K>) -> SVector<f64, R> {
+pub(crate) fn tr_mul_vec<const R: usize, const K: usize>(
+    a: &Matrix<K, R>,
+    x: &SVector<f64, K>,
+) -> SVector<f64, R> {
     SVector::from_fn(|i, _| dot(&a.data.0[i], array(x)))
 }
 

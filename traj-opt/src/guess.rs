@@ -88,6 +88,13 @@ impl<const NX: usize, const NU: usize> Guess<NX, NU> {
         self.final_time
     }
 
+    /// The same trajectory with another final time, s.
+    #[must_use]
+    pub fn with_final_time(mut self, final_time: f64) -> Self {
+        self.final_time = final_time;
+        self
+    }
+
     /// State and control at a fraction of the flight.
     #[must_use]
     pub fn sample(&self, fraction: f64) -> (SVector<f64, NX>, SVector<f64, NU>) {

@@ -15,11 +15,20 @@ pub struct Options {
     pub max_iterations: usize,
     /// First barrier parameter. Default 0.1 (that of IPOPT).
     pub initial_mu: f64,
+    /// How often a solve with free final time that gets stuck far from feasibility is begun again, each time from a guess twice
+    /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. Default 3.
+    pub time_restarts: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-8, acceptable_tolerance: 1e-6, max_iterations: 300, initial_mu: 0.1 }
+        Self {
+            tolerance: 1e-8,
+            acceptable_tolerance: 1e-6,
+            max_iterations: 300,
+            initial_mu: 0.1,
+            time_restarts: 3,
+        }
     }
 }
 
@@ -49,6 +58,13 @@ impl Options {
     #[must_use]
     pub fn with_initial_mu(mut self, mu: f64) -> Self {
         self.initial_mu = mu;
+        self
+    }
+
+    /// Sets [`time_restarts`](Self::time_restarts).
+    #[must_use]
+    pub fn with_time_restarts(mut self, n: usize) -> Self {
+        self.time_restarts = n;
         self
     }
 

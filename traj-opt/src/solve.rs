@@ -5,7 +5,7 @@ use crate::nlp::interior_point::{Memory, Outcome};
 use crate::nlp::program::Program;
 use crate::nlp::{runge_kutta, setup};
 use crate::{
-    Dynamics, Error, Guess, Iteration, Mesh, Multipliers, Options, Problem, Solution, Transcription,
+    Dynamics, Error, Guess, Iteration, Mesh, Multipliers, Options, Problem, Solution, Status, Transcription,
 };
 use nalgebra::SVector;
 use std::ops::ControlFlow;
@@ -36,7 +36,9 @@ pub fn solve<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     guess: &Guess<NX, NU>,
     options: &Options,
 ) -> Result<Solution<NX, NU>, Error> {
-    solve_with(&mut Workspace::new(), problem, mesh, transcription, guess, options, |_| ControlFlow::Continue(()))
+    solve_with(&mut Workspace::new(), problem, mesh, transcription, guess, options, |_| {
+        ControlFlow::Continue(())
+    })
 }
 
 /// [`solve`] with a reusable workspace and a monitor that sees every iteration and may stop the solve by returning
@@ -51,7 +53,7 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     transcription: Transcription,
     guess: &Guess<NX, NU>,
     options: &Options,
-    monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
+    mut monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
 ) -> Result<Solution<NX, NU>, Error> {
     options.validate()?;
     let bounds = problem.bounds();
@@ -65,8 +67,21 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let free_time = bounds.final_time_lower != bounds.final_time_upper;
     let program = Program { problem, mesh, transcription, bounds, scales, free_time };
     let memory = &mut workspace.memory;
-    memory.start(&program, guess, options);
-    let outcome = memory.run(&program, options, monitor);
+    let restarts = if free_time { options.time_restarts } else { 0 };
+    let mut spent = 0;
+    let mut attempt = 0;
+    let mut outcome = loop {
+        let length = (guess.final_time() - bounds.initial_time) * f64::powi(2.0, attempt as i32);
+        memory.start(&program, guess, bounds.initial_time + length, options);
+        let outcome = memory.run(&program, options, attempt < restarts, &mut monitor);
+        let again = outcome.status == Status::Infeasible && attempt < restarts;
+        if !again || bounds.initial_time + 2.0 * length > bounds.final_time_upper {
+            break outcome;
+        }
+        spent += outcome.iterations;
+        attempt += 1;
+    };
+    outcome.iterations += spent;
     Ok(extract(&program, memory, &outcome))
 }
 

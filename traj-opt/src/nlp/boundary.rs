@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::program::{Duals, Linearisation, Program, Scratch};
-use crate::autodiff::{constant, constant2, gradient, hessian_part, mixed_part, seed, seed2, seed_rows};
+use crate::autodiff::{constant, constant2, gradient, hessian_part, mixed_part, seed, seed_rows, seed2};
 use crate::{Bounds, Problem};
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Derivative, Dual2SVec64, Dual64, DualSVec64, HyperDual64, HyperDualSVec64};
@@ -169,10 +169,9 @@ fn second_derivatives<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let problem = program.problem;
     let n = weights.len();
     let time = Dual2SVec64::from_re(tf);
-    for (knot, start, end) in [
-        (layout.n_segments, constant2::<NX, NX>(x0), seed2(xf)),
-        (0, seed2(x0), constant2::<NX, NX>(xf)),
-    ] {
+    for (knot, start, end) in
+        [(layout.n_segments, constant2::<NX, NX>(x0), seed2(xf)), (0, seed2(x0), constant2::<NX, NX>(xf))]
+    {
         problem.boundary(&start, &end, time, &mut scratch.xx[..n]);
         out.raw.q[knot] += hessian_part(&problem.mayer(&start, &end, time));
         for i in 0..n {

@@ -64,8 +64,7 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let state_offsets = [layout.state(k), layout.middle(k), layout.state(k + 1)];
     for i in 0..3 {
         let omega = lambda * WEIGHT[i] + eta * HERMITE[i];
-        let terms =
-            PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i]), &omega, WEIGHT[i]);
+        let terms = PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i]), &omega, WEIGHT[i]);
         out.add_point_gradient(layout, (state_offsets[i], layout.control(k, i)), &terms);
         if i == 1 {
             add_middle(layout, k, &terms, out);

@@ -23,6 +23,19 @@ const TAU_MIN: f64 = 0.99;
 const S_MAX: f64 = 100.0;
 /// Penalty on end conditions in the recursion, relative to the scaled length of their gradients.
 const RHO: f64 = 1e3;
+/// Range of the damping relative to the squared scales of the variables.
+const LEAST_DAMPING: f64 = 1e-10;
+const GREATEST_DAMPING: f64 = 1e-3;
+/// Damping that a shortened step starts with, and up to which a failed line search is repeated with more.
+const DAMPING_STEP: f64 = 1e-8;
+const RETRY_DAMPING: f64 = 1e-4;
+/// Most that one step may shorten or lengthen the flight.
+const SHORTEN: f64 = 0.5;
+const LENGTHEN: f64 = 3.0;
+/// A solve whose steps are shorter than this, this many times in a row, far from feasible, is stuck.
+const SHORT_STEP: f64 = 0.03;
+const SHORT_STEPS: usize = 4;
+const FAR_FROM_FEASIBLE: f64 = 1e-2;
 /// Relaxation of bounds.
 const RELAX: f64 = 1e-8;
 
@@ -55,9 +68,12 @@ pub(crate) struct Memory<const NX: usize, const NU: usize> {
     pub log: Vec<Iteration>,
     pub states: StateScale<NX>,
     pub time_weight: f64,
+    /// Levenberg-Marquardt damping of flat directions: grows when the line search shortens steps, falls when it does not.
+    pub damping: f64,
     /// Last regularisation that was needed.
     pub delta: f64,
     pub objective_scale: f64,
+    pub initial_time: f64,
     pub mu: f64,
 }
 
@@ -87,6 +103,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         &mut self,
         program: &Program<NX, NU, P>,
         guess: &Guess<NX, NU>,
+        final_time: f64,
         options: &Options,
     ) {
         self.rows.rebuild(program.problem, &program.bounds);
@@ -117,8 +134,13 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         setup::fill_bounds(program, &self.layout, &self.rows, &mut self.bounds);
         self.bounds.relax(RELAX);
         setup::fill_guess(program, &self.layout, guess, &mut self.w);
+        if program.free_time {
+            self.w[self.layout.time] = final_time;
+        }
         self.bounds.push_inside(&mut self.w, DEFAULT_PUSH);
         self.delta = 0.0;
+        self.initial_time = program.bounds.initial_time;
+        self.damping = LEAST_DAMPING;
         self.mu = options.initial_mu;
         self.place_slacks(program);
         self.bounds.start_multipliers(&self.w, self.mu);
@@ -239,13 +261,23 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         &mut self,
         program: &Program<NX, NU, P>,
         options: &Options,
+        give_up_early: bool,
         mut monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
     ) -> Outcome {
         self.filter.start(self.theta(&self.values));
+        self.least_squares_multipliers();
         let mut step_length = 1.0;
         let mut acceptable = 0;
+        let mut short_steps = 0;
         for iteration in 0..=options.max_iterations {
-            program.linearise(&self.layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
+            program.linearise(
+                &self.layout,
+                &self.rows,
+                &self.w,
+                &self.duals,
+                &mut self.scratch,
+                &mut self.lin,
+            );
             let residuals = self.residuals(0.0);
             let entry = Iteration {
                 iteration,
@@ -272,12 +304,21 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             if iteration == options.max_iterations {
                 return finish(fallback(Status::IterationLimit));
             }
+            let stuck = step_length < SHORT_STEP && residuals.primal > FAR_FROM_FEASIBLE;
+            short_steps = if stuck { short_steps + 1 } else { 0 };
+            if give_up_early && short_steps >= SHORT_STEPS {
+                return finish(Status::Infeasible);
+            }
             self.update_barrier(options);
-            if self.newton_direction(program.free_time).is_err() {
+            if self.newton_direction().is_err() {
                 return finish(fallback(Status::Stalled));
             }
             match self.advance(program) {
                 Some(alpha) => step_length = alpha,
+                None if self.damping < RETRY_DAMPING => {
+                    self.damping = (self.damping * 100.0).max(DAMPING_STEP);
+                    step_length = 0.0;
+                }
                 None if self.restore(program) => step_length = 0.0,
                 None if acceptable > 0 => return finish(Status::Acceptable),
                 None if residuals.primal > options.acceptable_tolerance => return finish(Status::Infeasible),
@@ -290,9 +331,29 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     /// Monotone decrease of mu (Fiacco and McCormick) once the barrier problem is solved well enough.
     fn update_barrier(&mut self, options: &Options) {
         let least = options.tolerance / 10.0 * self.objective_scale;
-        while self.mu > least && worst_of(&self.residuals(self.mu)) <= KAPPA_EPSILON * self.mu / self.objective_scale {
+        while self.mu > least
+            && worst_of(&self.residuals(self.mu)) <= KAPPA_EPSILON * self.mu / self.objective_scale
+        {
             self.mu = (KAPPA_MU * self.mu).min(self.mu.powf(THETA_MU)).max(least);
             self.filter.clear();
+        }
+    }
+
+    /// Greatest step along a direction that respects the bounds and changes the length of the flight moderately.
+    pub fn primal_step(&self, corrected: bool) -> f64 {
+        let dw = if corrected { &self.correction.w } else { &self.direction.w };
+        let alpha = self.bounds.primal_step(&self.w, dw, self.tau());
+        let (length, change) = (self.w[self.layout.time] - self.initial_time, dw[self.layout.time]);
+        let limit = if change < 0.0 { (1.0 - SHORTEN) * length } else { (LENGTHEN - 1.0) * length };
+        if change.abs() * alpha > limit { limit / change.abs() } else { alpha }
+    }
+
+    /// Damps more after a step that the line search cut to `fraction`, less after one that it did not.
+    pub fn adapt_damping(&mut self, fraction: f64) {
+        if fraction < 0.1 {
+            self.damping = (self.damping * 10.0).clamp(DAMPING_STEP, GREATEST_DAMPING);
+        } else if fraction > 0.5 {
+            self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
         }
     }
 
@@ -313,15 +374,13 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     }
 
     /// Factorises with as little regularisation as convexity needs (IPOPT's algorithm IC) and computes the direction.
-    fn newton_direction(&mut self, free_time: bool) -> Result<(), NotConvex> {
-        let _ = free_time;
+    fn newton_direction(&mut self) -> Result<(), NotConvex> {
         let system = System {
             layout: &self.layout,
             rows: &self.rows,
             lin: &self.lin,
             w: &self.w,
             bounds: &self.bounds,
-            duals: &self.duals,
             mu: self.mu,
         };
         system.assemble(&mut self.lq);
@@ -333,9 +392,53 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.solve_for_direction()
     }
 
+    /// Multipliers that make the gradient of the Lagrangian least in the scaled norm; kept only if moderate.
+    fn least_squares_multipliers(&mut self) {
+        self.lq.copy_from(&self.lin.raw);
+        self.lq.clear_hessian();
+        for (i, slack) in self.rows.slack.iter().enumerate() {
+            if slack.is_some() {
+                self.lq.compliance[i] = self.boundary_scale[i] * self.boundary_scale[i];
+            }
+        }
+        self.rhs.c.fill(SVector::zeros());
+        self.rhs.e.fill(0.0);
+        let layout = &self.layout;
+        let net = |i: usize| self.lin.objective[i] - self.bounds.z_lower[i] + self.bounds.z_upper[i];
+        for knot in 0..=layout.n_segments {
+            self.rhs.gx[knot] = SVector::from_fn(|i, _| net(layout.state(knot) + i));
+        }
+        for i in 0..layout.n_segments * layout.m {
+            self.rhs.gu[i] = net(layout.controls + i);
+        }
+        self.rhs.gp = net(layout.time);
+        let mut riccati = std::mem::take(&mut self.riccati);
+        if riccati.factorise(&self.lq, &self.regularisation(1.0)).is_ok() {
+            riccati.solve(&self.lq, &self.states.weight, &self.rhs, &mut self.step);
+            let scale = |v: &SVector<f64, NX>| v.component_mul(&self.states.scale).amax();
+            let worst = self.step.costate.iter().map(scale).fold(0.0, f64::max);
+            if worst < 1e3 * self.objective_scale {
+                for k in 0..layout.n_segments {
+                    let costate = self.step.costate[k];
+                    self.duals.defect[k] = match self.lin.resolve.get(k) {
+                        Some(resolve) => crate::dense::tr_mul_vec(resolve, &costate),
+                        None => costate,
+                    };
+                    if let Some(middle) = self.lin.middles.get(k) {
+                        self.duals.middle[k] =
+                            crate::dense::tr_mul_vec(&middle.defect_by, &self.duals.defect[k]);
+                    }
+                }
+                self.duals.boundary.copy_from_slice(&self.step.boundary);
+            }
+        }
+        self.riccati = riccati;
+    }
+
     fn factorise(&mut self, riccati: &mut Riccati<NX>) -> Result<(), NotConvex> {
-        if riccati.factorise(&self.lq, &self.regularisation(0.0)).is_ok() {
-            self.delta = 0.0_f64.max(self.delta * 0.0);
+        let least = self.damping;
+        if riccati.factorise(&self.lq, &self.regularisation(least)).is_ok() {
+            self.delta = 0.0;
             return Ok(());
         }
         let mut delta = if self.last_delta() > 0.0 { (self.last_delta() / 3.0).max(1e-20) } else { 1e-4 };
@@ -363,7 +466,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             lin: &self.lin,
             w: &self.w,
             bounds: &self.bounds,
-            duals: &self.duals,
             mu: self.mu,
         };
         system.expand(&self.values, &self.step, &mut self.direction);
@@ -375,7 +477,8 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     pub fn origin(&self) -> Origin {
         let mut slope = 0.0;
         for i in 0..self.w.len() {
-            slope += (self.lin.objective[i] + self.bounds.gradient(&self.w, i, self.mu)) * self.direction.w[i];
+            slope +=
+                (self.lin.objective[i] + self.bounds.gradient(&self.w, i, self.mu)) * self.direction.w[i];
         }
         Origin { theta: self.theta(&self.values), phi: self.phi(&self.w, &self.values), slope }
     }

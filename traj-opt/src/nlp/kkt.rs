@@ -22,7 +22,6 @@ pub(crate) struct System<'a, const NX: usize, const NU: usize> {
     pub lin: &'a Linearisation<NX, NU>,
     pub w: &'a [f64],
     pub bounds: &'a Box,
-    pub duals: &'a Duals<NX>,
     pub mu: f64,
 }
 
@@ -219,7 +218,13 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         g
     }
 
-    fn add_middle_gradient(&self, values: &Values<NX>, k: usize, offset: &SVector<f64, NX>, rhs: &mut Rhs<NX>) {
+    fn add_middle_gradient(
+        &self,
+        values: &Values<NX>,
+        k: usize,
+        offset: &SVector<f64, NX>,
+        rhs: &mut Rhs<NX>,
+    ) {
         let m = self.layout.m;
         let middle = &self.lin.middles[k];
         let (hxx, hxu, hxp) = self.middle_hessian(k);
@@ -287,8 +292,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         out.w[layout.middle(k)..layout.middle(k) + NX].copy_from_slice(dm.as_slice());
         let (hxx, hxu, hxp) = self.middle_hessian(k);
         let du: SVector<f64, NU> = vector(&step.du, k * m + NU);
-        let force =
-            self.middle_gradient(values, k) + mul_vec(&hxx, &dm) + mul_vec(&hxu, &du) + hxp * step.dp;
+        let force = self.middle_gradient(values, k) + mul_vec(&hxx, &dm) + mul_vec(&hxu, &du) + hxp * step.dp;
         costate += tr_mul_vec(&middle.by_next, &force);
         let defect = tr_mul_vec(&self.lin.resolve[k], &costate);
         out.duals.middle[k] = force + tr_mul_vec(&middle.defect_by, &defect);

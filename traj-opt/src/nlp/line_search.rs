@@ -14,7 +14,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     /// Moves to an acceptable point along the direction and returns the step length; `None` if there is none.
     pub fn advance<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) -> Option<f64> {
         let tau = self.tau();
-        let greatest = self.bounds.primal_step(&self.w, &self.direction.w, tau);
+        let greatest = self.primal_step(false);
         let dual = self.bounds.dual_step(tau);
         let origin = self.origin();
         let least = self.filter.least_step(&origin).max(1e-14);
@@ -23,13 +23,16 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         while alpha >= least {
             let (theta, acceptance) = self.try_step(program, &origin, alpha, false);
             if acceptance != Acceptance::Rejected {
-                self.accept(&origin, acceptance, alpha, alpha, dual, false);
+                self.accept(&origin, acceptance, alpha, dual, false);
+                self.adapt_damping(alpha / greatest);
                 return Some(alpha);
             }
-            if first && theta >= origin.theta && theta.is_finite() {
-                if let Some(corrected) = self.correct(program, &origin, greatest, theta) {
-                    return Some(corrected);
-                }
+            if first
+                && theta >= origin.theta
+                && theta.is_finite()
+                && let Some(corrected) = self.correct(program, &origin, greatest, theta)
+            {
+                return Some(corrected);
             }
             first = false;
             alpha *= 0.5;
@@ -74,12 +77,12 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             self.accumulate_correction(scale);
             self.solve_correction();
             let tau = self.tau();
-            scale = self.bounds.primal_step(&self.w, &self.correction.w, tau);
+            scale = self.primal_step(true);
             let (next, acceptance) = self.try_step(program, origin, scale, true);
             if acceptance != Acceptance::Rejected {
                 self.bounds.directions(&self.w, &self.correction.w, self.mu);
                 let dual = self.bounds.dual_step(tau);
-                self.accept(origin, acceptance, alpha, scale, dual, true);
+                self.accept(origin, acceptance, scale, dual, true);
                 return Some(scale);
             }
             theta = next;
@@ -101,11 +104,13 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     /// `c_soc <- alpha c_soc + c(trial)`.
     fn accumulate_correction(&mut self, alpha: f64) {
         let (trial, sum) = (&self.trial_values, &mut self.corrected);
-        let vectors = sum.defect.iter_mut().zip(&trial.defect).chain(sum.middle.iter_mut().zip(&trial.middle));
+        let vectors =
+            sum.defect.iter_mut().zip(&trial.defect).chain(sum.middle.iter_mut().zip(&trial.middle));
         for (s, t) in vectors {
             *s = *s * alpha + t;
         }
-        let scalars = sum.path.iter_mut().zip(&trial.path).chain(sum.boundary.iter_mut().zip(&trial.boundary));
+        let scalars =
+            sum.path.iter_mut().zip(&trial.path).chain(sum.boundary.iter_mut().zip(&trial.boundary));
         for (s, t) in scalars {
             *s = *s * alpha + t;
         }
@@ -118,7 +123,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             lin: &self.lin,
             w: &self.w,
             bounds: &self.bounds,
-            duals: &self.duals,
             mu: self.mu,
         };
         system.right_hand_side(&self.corrected, &mut self.rhs);
@@ -129,22 +133,13 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             lin: &self.lin,
             w: &self.w,
             bounds: &self.bounds,
-            duals: &self.duals,
             mu: self.mu,
         };
         system.expand(&self.corrected, &self.step, &mut self.correction);
     }
 
     /// Takes the trial point.
-    fn accept(
-        &mut self,
-        origin: &Origin,
-        acceptance: Acceptance,
-        _tested: f64,
-        alpha: f64,
-        dual: f64,
-        corrected: bool,
-    ) {
+    fn accept(&mut self, origin: &Origin, acceptance: Acceptance, alpha: f64, dual: f64, corrected: bool) {
         if acceptance == Acceptance::Filter {
             self.filter.add(origin);
         }

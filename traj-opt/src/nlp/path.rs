@@ -4,7 +4,7 @@ use super::layout::{Layout, Place, Point};
 use super::program::{Duals, Linearisation, Program, Scratch, add_control_block};
 use crate::Problem;
 use crate::autodiff::{
-    constant, constant2, gradient, hessian_part, mixed_part, seed, seed2, seed_columns, seed_rows,
+    constant, constant2, gradient, hessian_part, mixed_part, seed, seed_columns, seed_rows, seed2,
 };
 use crate::dense::vector;
 use crate::{Hessian, autodiff};

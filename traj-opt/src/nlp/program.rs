@@ -217,7 +217,9 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
         let mut objective = 0.0;
         for k in 0..layout.n_segments {
             objective += match self.transcription {
-                Transcription::RungeKutta { substeps } => runge_kutta::evaluate(self, layout, substeps, k, w, out),
+                Transcription::RungeKutta { substeps } => {
+                    runge_kutta::evaluate(self, layout, substeps, k, w, out)
+                }
                 Transcription::Trapezoidal => trapezoidal::evaluate(self, layout, k, w, out),
                 Transcription::HermiteSimpson => hermite_simpson::evaluate(self, layout, k, w, out),
             };

@@ -69,7 +69,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             lin: &self.lin,
             w: &self.w,
             bounds: &self.bounds,
-            duals: &self.duals,
             mu: self.mu,
         };
         system.assemble(&mut self.lq);
@@ -89,7 +88,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             lin: &self.lin,
             w: &self.w,
             bounds: &self.bounds,
-            duals: &self.duals,
             mu: self.mu,
         };
         system.expand(&self.values, &self.step, &mut self.direction);
@@ -98,12 +96,18 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
 
     fn reduce_violation<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) -> bool {
         let start = self.theta(&self.values);
-        let mut alpha = self.bounds.primal_step(&self.w, &self.direction.w, self.tau());
+        let mut alpha = self.primal_step(false);
         while alpha > 1e-10 {
             for i in 0..self.w.len() {
                 self.trial[i] = self.w[i] + alpha * self.direction.w[i];
             }
-            program.evaluate(&self.layout, &self.rows, &self.trial, &mut self.scratch, &mut self.trial_values);
+            program.evaluate(
+                &self.layout,
+                &self.rows,
+                &self.trial,
+                &mut self.scratch,
+                &mut self.trial_values,
+            );
             let theta = self.theta(&self.trial_values);
             if theta <= (1.0 - 1e-4 * alpha) * start {
                 std::mem::swap(&mut self.w, &mut self.trial);

@@ -1,7 +1,7 @@
 //! Dynamics and running cost at one collocation point, with derivatives.
 
 use crate::autodiff::{
-    constant, constant2, gradient, hessian_part, mixed_part, seed, seed2, seed_columns, seed_rows,
+    constant, constant2, gradient, hessian_part, mixed_part, seed, seed_columns, seed_rows, seed2,
 };
 use crate::dense::tr_mul_vec;
 use crate::{Dynamics, Hessian, Jacobian, Problem};
@@ -102,11 +102,8 @@ fn add_running_hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 ) -> Option<()> {
     let xx = problem.lagrange(Dual2SVec64::from_re(t), &seed2(x), &constant2::<NU, NX>(u))?;
     let uu = problem.lagrange(Dual2SVec64::from_re(t), &constant2::<NX, NU>(x), &seed2(u))?;
-    let xu = problem.lagrange(
-        HyperDualSVec64::from_re(t),
-        &seed_rows::<NX, NU>(x),
-        &seed_columns::<NX, NU>(u),
-    )?;
+    let xu =
+        problem.lagrange(HyperDualSVec64::from_re(t), &seed_rows::<NX, NU>(x), &seed_columns::<NX, NU>(u))?;
     out.state_state += hessian_part(&xx) * weight;
     out.control_control += hessian_part(&uu) * weight;
     out.state_control += mixed_part(&xu) * weight;

@@ -15,7 +15,11 @@ pub(crate) fn validate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 ) -> Result<(), Error> {
     let check = |what, index, lower: f64, upper: f64| {
         let empty = lower == f64::INFINITY || upper == f64::NEG_INFINITY;
-        if lower <= upper && !empty { Ok(()) } else { Err(Error::InconsistentBounds { what, index, lower, upper }) }
+        if lower <= upper && !empty {
+            Ok(())
+        } else {
+            Err(Error::InconsistentBounds { what, index, lower, upper })
+        }
     };
     for i in 0..NX {
         check(BoundKind::State, i, bounds.state_lower[i], bounds.state_upper[i])?;
@@ -99,7 +103,11 @@ pub(crate) fn fill_bounds<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
             ] {
                 if knot == at {
                     // a fixed component needs no bound: it is removed, or held by its boundary row
-                    (lower, upper) = if l == u { (f64::NEG_INFINITY, f64::INFINITY) } else { (lower.max(l), upper.min(u)) };
+                    (lower, upper) = if l == u {
+                        (f64::NEG_INFINITY, f64::INFINITY)
+                    } else {
+                        (lower.max(l), upper.min(u))
+                    };
                 }
             }
             out.lower[layout.state(knot) + i] = lower;

@@ -24,8 +24,7 @@ pub(crate) fn evaluate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         slope += program.problem.dynamics().derivative(t, &x, &u);
         cost += program.problem.lagrange(t, &x, &u).unwrap_or(0.0);
     }
-    out.defect[k] =
-        program.state(layout, w, k) + slope * (0.5 * h) - program.state(layout, w, k + 1);
+    out.defect[k] = program.state(layout, w, k) + slope * (0.5 * h) - program.state(layout, w, k + 1);
     cost * 0.5 * h
 }
 
@@ -56,8 +55,7 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     out.add_gradient(layout.state(k), lambda.as_slice());
     out.add_gradient(layout.state(k + 1), (-lambda).as_slice());
     for i in 0..2 {
-        let terms =
-            PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i]), &(lambda * 0.5), 0.5);
+        let terms = PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i]), &(lambda * 0.5), 0.5);
         out.add_point_gradient(layout, (layout.state(k + i), layout.control(k, i)), &terms);
         let columns = mul(&resolve, &(model[i].f.control * half));
         for j in 0..NU {

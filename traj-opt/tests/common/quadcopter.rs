@@ -1,7 +1,7 @@
 //! The two quadcopter models of the reference transitions (`tests/data/transitions.md`) and the transition problem.
 
 use nalgebra::{RealField, SVector};
-use traj_opt::{Bounds, Dynamics, Guess, Problem};
+use traj_opt::{Bounds, Dynamics, Guess, Hessian, Jacobian, Problem};
 
 pub const GRAVITY: f64 = 9.81;
 pub const MASS: f64 = 1.5;
@@ -16,7 +16,12 @@ fn number<T: RealField + Copy>(v: f64) -> T {
 }
 
 /// Velocity and quaternion rates: state p, v, q in rows 0..10.
-fn motion<T: RealField + Copy, const N: usize>(x: &SVector<T, N>, thrust: T, w: [T; 3], out: &mut SVector<T, N>) {
+fn motion<T: RealField + Copy, const N: usize>(
+    x: &SVector<T, N>,
+    thrust: T,
+    w: [T; 3],
+    out: &mut SVector<T, N>,
+) {
     let v = [x[3], x[4], x[5]];
     let (qw, qx, qy, qz) = (x[6], x[7], x[8], x[9]);
     let two: T = number(2.0);
@@ -37,6 +42,107 @@ fn motion<T: RealField + Copy, const N: usize>(x: &SVector<T, N>, thrust: T, w: 
     out[9] = half * (qw * w[2] + qx * w[1] - qy * w[0]);
 }
 
+/// Derivatives of [`motion`] in closed form: the same for both models.
+mod closed_form {
+    use super::{DRAG, GRAVITY, MASS};
+    use nalgebra::{Matrix4, SMatrix, SVector, Vector3, Vector4};
+
+    /// `q' M q / |q|^2` is the component of the body's z axis along `weight`.
+    fn axis_form(weight: &Vector3<f64>) -> Matrix4<f64> {
+        let (x, y, z) = (weight[0], weight[1], weight[2]);
+        Matrix4::new(z, -y, x, 0.0, -y, -z, 0.0, x, x, 0.0, -z, y, 0.0, x, y, z)
+    }
+
+    fn speed(v: &Vector3<f64>) -> f64 {
+        (v.norm_squared() + 1e-12).sqrt()
+    }
+
+    /// Value and gradient of the component of the body's z axis along `weight`.
+    fn axis_component(q: &Vector4<f64>, form: &Matrix4<f64>) -> (f64, Vector4<f64>) {
+        let n = q.norm_squared();
+        let fq = form * q;
+        let value = q.dot(&fq) / n;
+        (value, (fq - q * value) * (2.0 / n))
+    }
+
+    /// Quaternion rate is `1/2 rates(q) w`.
+    pub fn rates(q: &Vector4<f64>) -> SMatrix<f64, 4, 3> {
+        let (w, x, y, z) = (q[0], q[1], q[2], q[3]);
+        SMatrix::<f64, 4, 3>::new(-x, -y, -z, w, -z, y, z, w, -x, -y, x, w)
+    }
+
+    pub struct First {
+        pub acceleration: Vector3<f64>,
+        pub by_velocity: SMatrix<f64, 3, 3>,
+        pub by_attitude: SMatrix<f64, 3, 4>,
+        /// The body's z axis over the mass.
+        pub by_thrust: Vector3<f64>,
+        pub rate_by_attitude: Matrix4<f64>,
+        pub rate_by_rates: SMatrix<f64, 4, 3>,
+    }
+
+    pub fn first<const N: usize>(x: &SVector<f64, N>, thrust: f64, w: [f64; 3]) -> First {
+        let v = Vector3::new(x[3], x[4], x[5]);
+        let q = Vector4::new(x[6], x[7], x[8], x[9]);
+        let k = 0.5 * DRAG / MASS;
+        let s = speed(&v);
+        let mut by_attitude = SMatrix::<f64, 3, 4>::zeros();
+        let mut by_thrust = Vector3::zeros();
+        for i in 0..3 {
+            let (value, gradient) = axis_component(&q, &axis_form(&Vector3::ith(i, 1.0)));
+            by_attitude.set_row(i, &(gradient * (thrust / MASS)).transpose());
+            by_thrust[i] = value / MASS;
+        }
+        let [a, b, c] = w.map(|r| 0.5 * r);
+        First {
+            acceleration: by_thrust * thrust - v * (k * s) - Vector3::z() * GRAVITY,
+            by_velocity: (SMatrix::identity() * s + v * v.transpose() / s) * -k,
+            by_attitude,
+            by_thrust,
+            rate_by_attitude: Matrix4::new(0.0, -a, -b, -c, a, 0.0, c, -b, b, -c, 0.0, a, c, b, -a, 0.0),
+            rate_by_rates: rates(&q) * 0.5,
+        }
+    }
+
+    pub struct Second {
+        pub velocity: SMatrix<f64, 3, 3>,
+        pub attitude: Matrix4<f64>,
+        pub attitude_thrust: Vector4<f64>,
+        pub attitude_rates: SMatrix<f64, 4, 3>,
+    }
+
+    pub fn second<const N: usize>(x: &SVector<f64, N>, thrust: f64, weight: &SVector<f64, N>) -> Second {
+        let v = Vector3::new(x[3], x[4], x[5]);
+        let q = Vector4::new(x[6], x[7], x[8], x[9]);
+        let wv = Vector3::new(weight[3], weight[4], weight[5]);
+        let (s, wq) = (speed(&v), [weight[6], weight[7], weight[8], weight[9]].map(|l| 0.5 * l));
+        let along = wv.dot(&v) / s;
+        let mixed = wv * v.transpose() / s;
+        let velocity = (mixed + mixed.transpose() + SMatrix::identity() * along
+            - v * v.transpose() * (along / (s * s)))
+            * (-0.5 * DRAG / MASS);
+        let form = axis_form(&wv);
+        let (value, gradient) = axis_component(&q, &form);
+        let outer = q * gradient.transpose();
+        let n = q.norm_squared();
+        let attitude =
+            (form - Matrix4::identity() * value - outer - outer.transpose()) * (2.0 / n * thrust / MASS);
+        let attitude_rates = SMatrix::<f64, 4, 3>::new(
+            wq[1], wq[2], wq[3], -wq[0], wq[3], -wq[2], -wq[3], -wq[0], wq[1], wq[2], -wq[1], -wq[0],
+        );
+        Second { velocity, attitude, attitude_thrust: gradient / MASS, attitude_rates }
+    }
+}
+
+fn fill_state_jacobian<const N: usize>(first: &closed_form::First, out: &mut nalgebra::SMatrix<f64, N, N>) {
+    for i in 0..3 {
+        out[(i, 3 + i)] = 1.0;
+    }
+    out.fixed_view_mut::<3, 3>(3, 3).copy_from(&first.by_velocity);
+    out.fixed_view_mut::<3, 4>(3, 6).copy_from(&first.by_attitude);
+    out.fixed_view_mut::<4, 4>(6, 6).copy_from(&first.rate_by_attitude);
+}
+
 /// Model A: collective thrust and body rates are the controls.
 pub struct ThrustRate;
 
@@ -44,6 +150,32 @@ impl Dynamics<10, 4> for ThrustRate {
     fn derivative<T: RealField + Copy>(&self, _: T, x: &SVector<T, 10>, u: &SVector<T, 4>) -> SVector<T, 10> {
         let mut out = SVector::repeat(T::zero());
         motion(x, u[0], [u[1], u[2], u[3]], &mut out);
+        out
+    }
+
+    fn jacobian(&self, t: f64, x: &SVector<f64, 10>, u: &SVector<f64, 4>) -> Jacobian<10, 4> {
+        let first = closed_form::first(x, u[0], [u[1], u[2], u[3]]);
+        let mut state = nalgebra::SMatrix::<f64, 10, 10>::zeros();
+        let mut control = nalgebra::SMatrix::<f64, 10, 4>::zeros();
+        fill_state_jacobian(&first, &mut state);
+        control.fixed_view_mut::<3, 1>(3, 0).copy_from(&first.by_thrust);
+        control.fixed_view_mut::<4, 3>(6, 1).copy_from(&first.rate_by_rates);
+        Jacobian { value: self.derivative(t, x, u), state, control, time: SVector::zeros() }
+    }
+
+    fn hessian(
+        &self,
+        _: f64,
+        x: &SVector<f64, 10>,
+        u: &SVector<f64, 4>,
+        weight: &SVector<f64, 10>,
+    ) -> Hessian<10, 4> {
+        let second = closed_form::second(x, u[0], weight);
+        let mut out = Hessian::<10, 4>::zeros();
+        out.state_state.fixed_view_mut::<3, 3>(3, 3).copy_from(&second.velocity);
+        out.state_state.fixed_view_mut::<4, 4>(6, 6).copy_from(&second.attitude);
+        out.state_control.fixed_view_mut::<4, 1>(6, 0).copy_from(&second.attitude_thrust);
+        out.state_control.fixed_view_mut::<4, 3>(6, 1).copy_from(&second.attitude_rates);
         out
     }
 
@@ -70,6 +202,53 @@ impl Dynamics<13, 4> for RigidBody {
         for i in 0..3 {
             let (a, b) = ((i + 1) % 3, (i + 2) % 3);
             out[10 + i] = (torque[i] - (j[b] - j[a]) * w[a] * w[b]) / j[i];
+        }
+        out
+    }
+
+    fn jacobian(&self, t: f64, x: &SVector<f64, 13>, f: &SVector<f64, 4>) -> Jacobian<13, 4> {
+        let w = [x[10], x[11], x[12]];
+        let first = closed_form::first(x, f.sum(), w);
+        let mut state = nalgebra::SMatrix::<f64, 13, 13>::zeros();
+        let mut control = nalgebra::SMatrix::<f64, 13, 4>::zeros();
+        fill_state_jacobian(&first, &mut state);
+        state.fixed_view_mut::<4, 3>(6, 10).copy_from(&first.rate_by_rates);
+        let arm = 0.225 / std::f64::consts::SQRT_2;
+        let lever = [[-arm, arm, arm, -arm], [-arm, arm, -arm, arm], [0.016, 0.016, -0.016, -0.016]];
+        for i in 0..3 {
+            let (a, b) = ((i + 1) % 3, (i + 2) % 3);
+            let gyro = (INERTIA[b] - INERTIA[a]) / INERTIA[i];
+            state[(10 + i, 10 + a)] = -gyro * w[b];
+            state[(10 + i, 10 + b)] = -gyro * w[a];
+            for rotor in 0..4 {
+                control[(3 + i, rotor)] = first.by_thrust[i];
+                control[(10 + i, rotor)] = lever[i][rotor] / INERTIA[i];
+            }
+        }
+        Jacobian { value: self.derivative(t, x, f), state, control, time: SVector::zeros() }
+    }
+
+    fn hessian(
+        &self,
+        _: f64,
+        x: &SVector<f64, 13>,
+        f: &SVector<f64, 4>,
+        weight: &SVector<f64, 13>,
+    ) -> Hessian<13, 4> {
+        let second = closed_form::second(x, f.sum(), weight);
+        let mut out = Hessian::<13, 4>::zeros();
+        out.state_state.fixed_view_mut::<3, 3>(3, 3).copy_from(&second.velocity);
+        out.state_state.fixed_view_mut::<4, 4>(6, 6).copy_from(&second.attitude);
+        out.state_state.fixed_view_mut::<4, 3>(6, 10).copy_from(&second.attitude_rates);
+        out.state_state.fixed_view_mut::<3, 4>(10, 6).copy_from(&second.attitude_rates.transpose());
+        for i in 0..3 {
+            let (a, b) = ((i + 1) % 3, (i + 2) % 3);
+            let gyro = -weight[10 + i] * (INERTIA[b] - INERTIA[a]) / INERTIA[i];
+            out.state_state[(10 + a, 10 + b)] = gyro;
+            out.state_state[(10 + b, 10 + a)] = gyro;
+        }
+        for rotor in 0..4 {
+            out.state_control.fixed_view_mut::<4, 1>(6, rotor).copy_from(&second.attitude_thrust);
         }
         out
     }
@@ -131,7 +310,8 @@ pub fn thrust_rate(start: &Vector<13>, end: &Vector<13>) -> Transition<ThrustRat
     let rates = [6.0, 6.0, 2.0];
     let lower = Vector::from([0.05 * MAX_THRUST, -rates[0], -rates[1], -rates[2]]);
     let upper = Vector::from([MAX_THRUST, rates[0], rates[1], rates[2]]);
-    let bounds = Bounds::free().with_control(lower, upper).with_initial_state(start).with_final_time(0.05, 500.0);
+    let bounds =
+        Bounds::free().with_control(lower, upper).with_initial_state(start).with_final_time(0.05, 500.0);
     Transition { dynamics: ThrustRate, start, end, bounds: terminal_but_attitude(bounds, &end) }
 }
 
@@ -186,7 +366,9 @@ pub fn references() -> Vec<Reference> {
     let column = |name: &str| header.iter().position(|h| *h == name).expect("column of the reference data");
     let names = ["px", "py", "pz", "vx", "vy", "vz", "qw", "qx", "qy", "qz", "wx", "wy", "wz"];
     let state = |fields: &[&str], prefix: &str| {
-        Vector::<13>::from_fn(|i, _| fields[column(&format!("{prefix}_{}", names[i]))].parse().expect("number"))
+        Vector::<13>::from_fn(|i, _| {
+            fields[column(&format!("{prefix}_{}", names[i]))].parse().expect("number")
+        })
     };
     lines
         .map(|line| {
