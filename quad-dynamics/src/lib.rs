@@ -13,9 +13,10 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod equipment;
 mod error;
 pub mod frames;
-mod loiter;
+pub mod loiter;
 mod mixer;
 pub mod models;
 mod motion;
@@ -26,11 +27,12 @@ mod vehicle;
 
 pub use nalgebra;
 
+pub use equipment::{Aerodynamics, Battery, Propulsion};
 pub use error::{Error, Field, Requirement};
 pub use frames::{Direction, GRAVITY, Heading};
 pub use loiter::{CameraLimit, Limit, Loiter, LoiterSpec, LoiterYaw, loiter_speed};
 pub use mixer::Mixer;
-pub use models::{JerkLimited, PointMass, RigidBody, ThrustRate};
+pub use models::{Jacobian, JerkLimited, PointMass, RigidBody, RotorLag, ThrustRate};
 pub use motion::Motion;
 pub use rk4::{rk4, rk4_step};
 pub use shaping::ShapingLimits;

@@ -21,16 +21,19 @@ impl Mixer {
     /// # Errors
     /// [`Error::RotorsDependent`] if the rotors cannot produce the three torques independently.
     pub fn new(rotors: &[Rotor; 4], torque_to_thrust: f64) -> Result<Self, Error> {
-        // Condition beyond which the inverse is noise: lengths enter as ratios, so the limit has no scale.
-        const LEAST_RELATIVE_DETERMINANT: f64 = 1e-9;
+        // Below this determinant of the matrix with rows of length one, the inverse is noise.
+        const LEAST_DETERMINANT: f64 = 1e-9;
         let column = |rotor: &Rotor| {
             let [x, y] = rotor.position;
             Vector4::new(1.0, y, -x, rotor.spin.yaw_sign() * torque_to_thrust)
         };
         let forward = Matrix4::from_columns(&rotors.each_ref().map(column));
-        let scale: f64 = forward.row_iter().map(|row| row.norm()).product();
-        let independent = forward.determinant().abs() > LEAST_RELATIVE_DETERMINANT * scale;
-        let inverse = forward.try_inverse().filter(|_| independent).ok_or(Error::RotorsDependent)?;
+        let lengths = Vector4::from_fn(|row, _| forward.row(row).norm().recip());
+        let scale = Matrix4::from_diagonal(&lengths);
+        let normalised = scale * forward;
+        let independent = normalised.determinant().abs() > LEAST_DETERMINANT;
+        let inverse = normalised.try_inverse().filter(|_| independent).map(|inverse| inverse * scale);
+        let inverse = inverse.filter(|m| m.iter().all(|x| x.is_finite())).ok_or(Error::RotorsDependent)?;
         Ok(Self { forward, inverse })
     }
 

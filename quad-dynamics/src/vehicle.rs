@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::equipment::{Aerodynamics, Battery, Propulsion};
 use crate::error::{Error, Field, Requirement};
 use crate::frames::GRAVITY;
 use crate::mixer::Mixer;
@@ -65,6 +66,15 @@ pub struct VehicleParameters {
     pub max_body_rates: [f64; 3],
     /// Yaw torque of a rotor per newton of its thrust, m.
     pub torque_to_thrust: f64,
+    /// Rotor speeds, lag and efficiency: for simulation and energy only.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub propulsion: Propulsion,
+    /// Drag beyond `drag_coefficient`: for simulation only.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub aerodynamics: Aerodynamics,
+    /// Battery: for energy only.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub battery: Battery,
 }
 
 #[cfg(feature = "serde")]
@@ -143,6 +153,44 @@ impl VehicleParameters {
         self
     }
 
+    /// The same with other propulsion data.
+    #[must_use]
+    pub fn with_propulsion(mut self, propulsion: Propulsion) -> Self {
+        self.propulsion = propulsion;
+        self
+    }
+
+    /// The same with other drag beyond the drag coefficient.
+    #[must_use]
+    pub fn with_aerodynamics(mut self, aerodynamics: Aerodynamics) -> Self {
+        self.aerodynamics = aerodynamics;
+        self
+    }
+
+    /// The same with another battery.
+    #[must_use]
+    pub fn with_battery(mut self, battery: Battery) -> Self {
+        self.battery = battery;
+        self
+    }
+
+    /// Thrust limits and torque from identified coefficients: thrust `thrust_coefficient * speed^2` (N s^2/rad^2), yaw
+    /// torque `torque_coefficient * speed^2` (N m s^2/rad^2), speeds from `min_speed` to `max_speed` (rad/s).
+    #[must_use]
+    pub fn with_rotor_coefficients(
+        mut self,
+        thrust_coefficient: f64,
+        torque_coefficient: f64,
+        min_speed: f64,
+        max_speed: f64,
+    ) -> Self {
+        self.max_thrust = 4.0 * thrust_coefficient * max_speed * max_speed;
+        self.min_thrust_share = (min_speed / max_speed).powi(2);
+        self.torque_to_thrust = torque_coefficient / thrust_coefficient;
+        self.propulsion.max_rotor_speed = max_speed;
+        self
+    }
+
     /// Everything that is wrong with these numbers; empty if [`Vehicle::new`] accepts them.
     #[must_use]
     pub fn problems(&self) -> Vec<Error> {
@@ -155,19 +203,29 @@ impl VehicleParameters {
     }
 
     fn range_problems(&self) -> Vec<Error> {
-        use Requirement::{Finite, From, NonNegative, Positive};
+        use Requirement::{Finite, From, NonNegative, Positive, Within};
         let share = From { low: 0.0, high: 1.0 };
+        let fraction = Within { low: 0.0, high: 1.0 };
         let single = [
             (Field::Mass, self.mass, Positive),
             (Field::MaxThrust, self.max_thrust, Positive),
             (Field::MinThrustShare, self.min_thrust_share, share),
             (Field::DragCoefficient, self.drag_coefficient, NonNegative),
             (Field::TorqueToThrust, self.torque_to_thrust, Positive),
+            (Field::MaxRotorSpeed, self.propulsion.max_rotor_speed, Positive),
+            (Field::RotorTimeConstant, self.propulsion.time_constant, Positive),
+            (Field::RotorRadius, self.propulsion.rotor_radius, Positive),
+            (Field::Efficiency, self.propulsion.efficiency, fraction),
+            (Field::BatteryEnergy, self.battery.energy, Positive),
+            (Field::UsableShare, self.battery.usable_share, fraction),
+            (Field::AvionicsPower, self.battery.avionics_power, NonNegative),
         ];
         let rates = self.max_body_rates.map(|rate| (Field::MaxBodyRates, rate, Positive));
         let places =
             self.rotors.iter().flat_map(|rotor| rotor.position.map(|x| (Field::RotorPosition, x, Finite)));
-        let all = single.into_iter().chain(rates).chain(places);
+        let body_drag = self.aerodynamics.body_drag.map(|drag| (Field::BodyDrag, drag, NonNegative));
+        let rotor_drag = self.aerodynamics.rotor_drag.map(|drag| (Field::RotorDrag, drag, NonNegative));
+        let all = single.into_iter().chain(rates).chain(places).chain(body_drag).chain(rotor_drag);
         all.filter_map(|(field, value, requirement)| requirement.check(field, value).err()).collect()
     }
 
@@ -324,6 +382,18 @@ impl Vehicle {
     #[must_use]
     pub fn max_body_rates(&self) -> Vector3<f64> {
         self.parameters.max_body_rates.into()
+    }
+
+    /// Thrust of one rotor per squared speed, N s^2/rad^2.
+    #[must_use]
+    pub fn thrust_coefficient(&self) -> f64 {
+        self.max_rotor_thrust() / self.parameters.propulsion.max_rotor_speed.powi(2)
+    }
+
+    /// Yaw torque of a rotor per newton of its thrust, m.
+    #[must_use]
+    pub fn torque_to_thrust(&self) -> f64 {
+        self.parameters.torque_to_thrust
     }
 
     /// The four rotors.

@@ -135,6 +135,47 @@ proptest! {
         prop_assert!(point.attitude.angle_to(&wanted.attitude) < 1e-7);
     }
 
+    /// The other models' analytic derivatives against dual numbers.
+    #[test]
+    fn jacobians_agree_with_dual_numbers(v in vector(15.0), q in attitude(), w in vector(6.0), wind in vector(8.0)) {
+        let vehicle = Vehicle::new(crooked()).unwrap();
+        let x = state(Vector3::zeros(), v, &q, w) * 1.1;
+        macro_rules! check {
+            ($model:expr, $nx:literal, $nu:literal) => {
+                let model = $model;
+                let x: SVector<f64, $nx> = x.fixed_rows::<$nx>(0).into_owned();
+                let u = SVector::<f64, $nu>::from_fn(|i, _| 12.0 - 3.0 * i as f64);
+                let analytic = model.jacobian(&x, &u);
+                let (value, by_state): (SVector<f64, $nx>, SMatrix<f64, $nx, $nx>) = jacobian(
+                    |x: SVector<DualSVec64<$nx>, $nx>| model.derivative(&x, &u.map(DualSVec64::from_re)), &x);
+                let (_, by_control): (SVector<f64, $nx>, SMatrix<f64, $nx, $nu>) = jacobian(
+                    |u: SVector<DualSVec64<$nu>, $nu>| model.derivative(&x.map(DualSVec64::from_re), &u), &u);
+                prop_assert!((analytic.value - value).amax() < 1e-12 * (1.0 + value.amax()));
+                prop_assert!((analytic.state - by_state).amax() < 1e-11 * (1.0 + by_state.amax()));
+                prop_assert!((analytic.control - by_control).amax() < 1e-11 * (1.0 + by_control.amax()));
+            };
+        }
+        check!(PointMass::new(&vehicle).with_wind(wind), 6, 3);
+        check!(JerkLimited::new(&vehicle).with_wind(wind), 9, 3);
+        check!(ThrustRate::new(&vehicle).with_wind(wind), 10, 4);
+    }
+
+    /// With rotors at their commands and no further drag, the model with lag is the rigid body.
+    #[test]
+    fn rotor_lag_contains_the_rigid_body(
+        v in vector(15.0), q in attitude(), w in vector(6.0), wind in vector(8.0), s in [150.0..690.0_f64, 150.0..690.0, 150.0..690.0, 150.0..690.0],
+    ) {
+        let vehicle = Vehicle::new(crooked()).unwrap();
+        let x = state(Vector3::zeros(), v, &q, w);
+        let speeds = Vector4::from(s);
+        let thrusts = speeds.map(|s| vehicle.thrust_coefficient() * s * s);
+        let full = SVector::<f64, 17>::from_fn(|i, _| if i < 13 { x[i] } else { speeds[i - 13] });
+        let wanted = RigidBody::new(&vehicle).with_wind(wind).derivative(&x, &thrusts);
+        let rate = RotorLag::new(&vehicle).with_wind(wind).derivative(&full, &(speeds * 1.1));
+        prop_assert!((rate.fixed_rows::<13>(0) - wanted).amax() < 1e-10);
+        prop_assert!((rate.fixed_rows::<4>(13) * 0.05 - speeds * 0.1).amax() < 1e-10);
+    }
+
     /// Dual numbers through the generic derivative, against central differences.
     #[test]
     fn dual_numbers_differentiate(v in vector(15.0), q in attitude(), w in vector(6.0), wind in vector(8.0)) {
@@ -146,6 +187,13 @@ proptest! {
             |x: SVector<DualSVec64<13>, 13>| model.derivative(&x, &control.map(DualSVec64::from_re)), &x,
         );
         prop_assert!((value - model.derivative(&x, &control)).amax() < 1e-12);
+        let analytic = model.jacobian(&x, &control);
+        prop_assert!((analytic.state - derivative).amax() < 1e-11 * (1.0 + derivative.amax()));
+        let (_, by_control): (SVector<f64, 13>, SMatrix<f64, 13, 4>) = jacobian(
+            |u: SVector<DualSVec64<4>, 4>| model.derivative(&x.map(DualSVec64::from_re), &u), &control,
+        );
+        prop_assert!((analytic.control - by_control).amax() < 1e-11 * (1.0 + by_control.amax()));
+        prop_assert_eq!(analytic.value, value);
         let h = 1e-5;
         for column in 0..13 {
             let step = SVector::<f64, 13>::ith(column, h);

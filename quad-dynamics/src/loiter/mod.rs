@@ -4,11 +4,11 @@ mod circle;
 mod limits;
 mod spec;
 
+pub use crate::frames::Direction;
 pub use limits::{Limit, loiter_speed};
 pub use spec::{CameraLimit, LoiterSpec, LoiterYaw};
 
 use crate::error::{Error, Field, Requirement};
-use crate::frames::Direction;
 use crate::motion::Motion;
 use crate::vehicle::Vehicle;
 

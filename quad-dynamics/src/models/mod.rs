@@ -6,6 +6,7 @@
 //! | [`JerkLimited`] | p, v, a (9) | jerk (3), m/s^3, world |
 //! | [`ThrustRate`] | p, v, q (10) | collective thrust, N; body rates (3), rad/s |
 //! | [`RigidBody`] | p, v, q, w (13) | rotor thrusts (4), N |
+//! | [`RotorLag`] (simulation only) | p, v, q, w, rotor speeds (17) | commanded rotor speeds (4), rad/s |
 //!
 //! Positions and velocities are in the world frame, `q = (w, x, y, z)` is body to world, `w` are body rates
 //! ([`frames`](crate::frames)). Forces are those of one equation:
@@ -13,17 +14,21 @@
 //!
 //! `derivative` is generic over the scalar, so that dual numbers give its derivatives.
 
+mod jacobian;
 mod jerk_limited;
 mod point_mass;
 mod rigid_body;
+mod rotor_lag;
 mod thrust_rate;
 
+pub use jacobian::Jacobian;
 pub use jerk_limited::JerkLimited;
 pub use point_mass::PointMass;
 pub use rigid_body::RigidBody;
+pub use rotor_lag::RotorLag;
 pub use thrust_rate::ThrustRate;
 
-use nalgebra::{RealField, SVector, Vector3};
+use nalgebra::{Matrix3, RealField, SVector, Vector3};
 
 use crate::frames::GRAVITY;
 use crate::vehicle::Vehicle;
@@ -79,6 +84,41 @@ pub(crate) fn thrust_direction<T: RealField + Copy>(q: [T; 4]) -> [T; 3] {
     let scale = (w * w + x * x + y * y + z * z).recip();
     let twice = scale + scale;
     [twice * (x * z + w * y), twice * (y * z - w * x), scale * (w * w - x * x - y * y + z * z)]
+}
+
+/// The body axes in the world: columns of the rotation, for a quaternion of any norm but zero.
+#[inline]
+pub(crate) fn rotation<T: RealField + Copy>(q: [T; 4]) -> [[T; 3]; 3] {
+    let [w, x, y, z] = q;
+    let scale = (w * w + x * x + y * y + z * z).recip();
+    let twice = scale + scale;
+    [
+        [scale * (w * w + x * x - y * y - z * z), twice * (x * y + w * z), twice * (x * z - w * y)],
+        [twice * (x * y - w * z), scale * (w * w - x * x + y * y - z * z), twice * (y * z + w * x)],
+        thrust_direction(q),
+    ]
+}
+
+/// `J^-1 (torque - w x J w)`.
+#[inline]
+pub(crate) fn angular_acceleration<T: RealField + Copy>(
+    vehicle: &Vehicle,
+    rates: [T; 3],
+    torque: [T; 3],
+) -> [T; 3] {
+    let [p, q, r] = rates;
+    let [hx, hy, hz] = multiply(vehicle.inertia_tensor(), rates);
+    let net = [torque[0] - (q * hz - r * hy), torque[1] - (r * hx - p * hz), torque[2] - (p * hy - q * hx)];
+    multiply(vehicle.inverse_inertia_tensor(), net)
+}
+
+/// Matrix times vector; the matrix's numbers are constants.
+#[inline]
+fn multiply<T: RealField + Copy>(matrix: &Matrix3<f64>, vector: [T; 3]) -> [T; 3] {
+    [0, 1, 2].map(|row| {
+        let entry = |column: usize| nalgebra::convert::<f64, T>(matrix[(row, column)]) * vector[column];
+        entry(0) + entry(1) + entry(2)
+    })
 }
 
 /// `q' = q (0, rates) / 2`.

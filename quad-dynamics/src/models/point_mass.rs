@@ -13,7 +13,7 @@ use crate::vehicle::Vehicle;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointMass {
     vehicle: Vehicle,
-    air: Air,
+    pub(super) air: Air,
 }
 
 impl PointMass {

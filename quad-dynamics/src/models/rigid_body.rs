@@ -1,8 +1,8 @@
 //! The vehicle as a rigid body pushed by four rotors.
 
-use nalgebra::{Matrix3, RealField, SVector, Vector3};
+use nalgebra::{Matrix3x4, RealField, SVector, Vector3};
 
-use super::{Air, entries, quaternion_rate, thrust_direction};
+use super::{Air, angular_acceleration, entries, quaternion_rate, thrust_direction};
 use crate::frames::from_wxyz;
 use crate::motion::Motion;
 use crate::vehicle::Vehicle;
@@ -14,8 +14,10 @@ use crate::vehicle::Vehicle;
 /// least and greatest thrust of a rotor, and body rates as bounds on states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RigidBody {
-    vehicle: Vehicle,
-    air: Air,
+    pub(super) vehicle: Vehicle,
+    pub(super) air: Air,
+    /// Angular acceleration per newton of each rotor, rad/s^2/N.
+    pub(super) spin_by_rotor: Matrix3x4<f64>,
     /// Rows: roll, pitch and yaw torque per newton of each rotor, m.
     torque: [[f64; 4]; 3],
 }
@@ -32,7 +34,8 @@ impl RigidBody {
         let unit = |i: usize| vehicle.mixer().thrust_and_torque(&SVector::ith(i, 1.0)).1;
         let columns: [Vector3<f64>; 4] = std::array::from_fn(unit);
         let torque = std::array::from_fn(|row| std::array::from_fn(|rotor| columns[rotor][row]));
-        Self { air: Air::new(vehicle), vehicle: vehicle.clone(), torque }
+        let spin_by_rotor = vehicle.inverse_inertia_tensor() * Matrix3x4::from_columns(&columns);
+        Self { air: Air::new(vehicle), vehicle: vehicle.clone(), spin_by_rotor, torque }
     }
 
     /// The same in a steady wind, m/s, world.
@@ -58,28 +61,19 @@ impl RigidBody {
         let up = thrust_direction(q);
         let free = self.air.acceleration(velocity);
         let [qw, qx, qy, qz] = quaternion_rate(q, rates);
-        let [wx, wy, wz] = self.angular_acceleration(rates, control);
+        let [wx, wy, wz] = angular_acceleration(&self.vehicle, rates, self.torque(control));
         let [vx, vy, vz] = velocity;
         let [ax, ay, az] = [0, 1, 2].map(|i| free[i] + up[i] * thrust);
         SVector::from([vx, vy, vz, ax, ay, az, qw, qx, qy, qz, wx, wy, wz])
     }
 
-    /// `J^-1 (tau - w x J w)`.
+    /// Roll, pitch and yaw torque of rotor thrusts, N m.
     #[inline]
-    fn angular_acceleration<T: RealField + Copy>(
-        &self,
-        rates: [T; 3],
-        rotor_thrusts: &SVector<T, 4>,
-    ) -> [T; 3] {
-        let [p, q, r] = rates;
-        let [hx, hy, hz] = multiply(self.vehicle.inertia_tensor(), rates);
-        let torque = self.torque.map(|row| {
+    fn torque<T: RealField + Copy>(&self, rotor_thrusts: &SVector<T, 4>) -> [T; 3] {
+        self.torque.map(|row| {
             let [a, b, c, d] = row.map(nalgebra::convert::<f64, T>);
             a * rotor_thrusts[0] + b * rotor_thrusts[1] + c * rotor_thrusts[2] + d * rotor_thrusts[3]
-        });
-        let net =
-            [torque[0] - (q * hz - r * hy), torque[1] - (r * hx - p * hz), torque[2] - (p * hy - q * hx)];
-        multiply(self.vehicle.inverse_inertia_tensor(), net)
+        })
     }
 
     /// Everything at one instant, as flown with these rotor thrusts held.
@@ -103,13 +97,4 @@ impl RigidBody {
             rotor_thrusts: *control,
         }
     }
-}
-
-/// Matrix times vector; the matrix's numbers are constants.
-#[inline]
-fn multiply<T: RealField + Copy>(matrix: &Matrix3<f64>, vector: [T; 3]) -> [T; 3] {
-    [0, 1, 2].map(|row| {
-        let entry = |column: usize| nalgebra::convert::<f64, T>(matrix[(row, column)]) * vector[column];
-        entry(0) + entry(1) + entry(2)
-    })
 }
