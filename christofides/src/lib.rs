@@ -5,6 +5,7 @@
 #![deny(missing_docs)]
 
 mod algorithm;
+mod candidates;
 mod delaunay;
 mod error;
 mod euler;

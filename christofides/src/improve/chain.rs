@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use std::collections::VecDeque;
 
 /// Longest of the three pieces that a kick permutes, in vertices.
-const PIECE: usize = 30;
+const PIECE: usize = 100;
 
 /// Vertices to be looked at between two questions whether to stop.
 const PATIENCE: usize = 256;

@@ -9,11 +9,8 @@ use super::array_tour::ArrayTour;
 use super::neighbours::Neighbours;
 use crate::metric::Metric;
 
-/// Neighbours tried for `t3` and for `t5`.
-const BREADTH: [usize; 2] = [8, 5];
-
 /// Most steps in a chain.
-const DEPTH: usize = 10;
+const DEPTH: usize = 50;
 
 /// A sequential exchange of two or three edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,7 +120,7 @@ impl<'a, M: Metric> Search<'a, M> {
     fn step(&self, t1: u32, t2: u32, open: f64) -> (Option<(f64, Exchange)>, Option<(f64, Exchange)>) {
         let (mut closed, mut best) = (None, None);
         let after = self.tour.next(t2);
-        for &(length, t3) in self.neighbours.of(t2).iter().take(BREADTH[0]) {
+        for &(length, t3) in self.neighbours.of(t2) {
             let g1 = open - length;
             if g1 <= 0.0 {
                 break;
@@ -160,7 +157,7 @@ impl<'a, M: Metric> Search<'a, M> {
         offer(closed, g2 - self.distance(t4, t1), Exchange::Two { t4, t3 });
         let after = self.tour.next(t4);
         let before = self.tour.previous(t4);
-        for &(length, t5) in self.neighbours.of(t4).iter().take(BREADTH[1]) {
+        for &(length, t5) in self.neighbours.of(t4) {
             let g3 = g2 - length;
             if g3 <= 0.0 {
                 break;
@@ -197,7 +194,7 @@ impl<'a, M: Metric> Search<'a, M> {
             return;
         }
         let g2 = g1 + self.distance(t3, t4);
-        for &(length, t5) in self.neighbours.of(t4).iter().take(BREADTH[1]) {
+        for &(length, t5) in self.neighbours.of(t4) {
             let g3 = g2 - length;
             if g3 <= 0.0 {
                 break;

@@ -1,7 +1,6 @@
 //! Minimum-weight perfect matching in general graphs, exact, with dual variables.
 
 mod blossoms;
-mod candidates;
 mod certificate;
 mod expand;
 mod forest;

@@ -1,11 +1,11 @@
 //! Entry points: sparse graphs, and complete graphs by pricing.
 
 use super::blossoms::Blossom;
-use super::candidates::candidates;
 use super::forest::Forest;
 use super::pricing::violated;
 use super::quantise::Scale;
 use super::search::Exposed;
+use crate::candidates::matching_candidates;
 use crate::error::Error;
 use crate::metric::Metric;
 use crate::validate::validate_finite;
@@ -101,7 +101,7 @@ impl Solver {
         if n % 2 == 1 {
             return Err(Error::OddVertexCount { n });
         }
-        let candidates = candidates(metric);
+        let candidates = matching_candidates(metric);
         let length = |&(u, v): &(u32, u32)| metric.distance(u as usize, v as usize);
         let scale = Scale::new(candidates.iter().map(length).fold(0.0, f64::max));
         self.edges.clear();

@@ -4,29 +4,66 @@ use crate::metric::Metric;
 
 /// The tree that grows from vertex 0 by its nearest outside vertex (Prim 1957); `O(n^2)` time, `O(n)` memory.
 pub(crate) fn prim(metric: &impl Metric) -> Vec<[usize; 2]> {
-    let n = metric.len();
-    let mut tree = Vec::with_capacity(n.saturating_sub(1));
-    // Vertices outside the tree with their nearest vertex inside.
-    let mut outside: Vec<(usize, usize, f64)> = (1..n).map(|v| (v, 0, metric.distance(v, 0))).collect();
-    while let Some(position) = nearest(&outside) {
-        let (added, parent, _) = outside.swap_remove(position);
-        tree.push([parent, added]);
-        for (v, from, least) in &mut outside {
-            let distance = metric.distance(*v, added);
-            if distance < *least {
-                (*from, *least) = (added, distance);
-            }
-        }
-    }
+    let mut tree = Vec::with_capacity(metric.len().saturating_sub(1));
+    let mut prim = Prim::default();
+    prim.run(metric.len(), |u, v| metric.distance(u, v), |from, to, _| tree.push([from, to]));
     tree
 }
 
-fn nearest(outside: &[(usize, usize, f64)]) -> Option<usize> {
-    let mut best = 0;
-    for (k, candidate) in outside.iter().enumerate() {
-        if candidate.2 < outside[best].2 {
-            best = k;
+/// Storage of the algorithm: the vertices outside the tree, each with its nearest vertex inside.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Prim {
+    vertex: Vec<u32>,
+    nearest: Vec<u32>,
+    cost: Vec<f64>,
+}
+
+impl Prim {
+    /// Calls `add` with every edge of a minimum spanning tree on `0..n` and its cost; vertices are named in the order in
+    /// which they join.
+    #[inline]
+    pub fn run(
+        &mut self,
+        n: usize,
+        cost: impl Fn(usize, usize) -> f64,
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
+        if n < 2 {
+            return;
+        }
+        self.vertex.clear();
+        self.vertex.extend(1..n as u32);
+        self.nearest.clear();
+        self.nearest.resize(n - 1, 0);
+        self.cost.clear();
+        self.cost.extend((1..n).map(|v| cost(0, v)));
+        // The smallest entry is found in the same pass that updates the entries.
+        let mut best = least(&self.cost);
+        loop {
+            let added = self.vertex.swap_remove(best) as usize;
+            let from = self.nearest.swap_remove(best) as usize;
+            add(from, added, self.cost.swap_remove(best));
+            if self.vertex.is_empty() {
+                return;
+            }
+            let mut smallest = f64::INFINITY;
+            best = 0;
+            let entries = self.vertex.iter().zip(&mut self.nearest).zip(&mut self.cost);
+            for (k, ((&v, nearest), least)) in entries.enumerate() {
+                let candidate = cost(added, v as usize);
+                if candidate < *least {
+                    *least = candidate;
+                    *nearest = added as u32;
+                }
+                if *least < smallest {
+                    smallest = *least;
+                    best = k;
+                }
+            }
         }
     }
-    (!outside.is_empty()).then_some(best)
+}
+
+fn least(costs: &[f64]) -> usize {
+    (0..costs.len()).fold(0, |a, b| if costs[b] < costs[a] { b } else { a })
 }

@@ -1,4 +1,4 @@
-//! The sparse graph that the search starts on.
+//! Sparse graphs in which matchings and 1-trees are searched first.
 
 use crate::delaunay::delaunay_edges;
 use crate::kd_tree::KdTree;
@@ -16,12 +16,23 @@ const NEIGHBOURS: usize = 10;
 /// Edges among which most of an optimal matching is likely to be found, each once; they contain a perfect matching.
 ///
 /// `O(n log n)` for points, `O(n^2)` for other metrics.
-pub(crate) fn candidates(metric: &impl Metric) -> Vec<(u32, u32)> {
+pub(crate) fn matching_candidates(metric: &impl Metric) -> Vec<(u32, u32)> {
     let n = metric.len();
     if n <= COMPLETE_UP_TO {
         return (0..n as u32).flat_map(|i| (i + 1..n as u32).map(move |j| (i, j))).collect();
     }
-    let mut edges = match metric.geometry() {
+    let mut edges = near_edges(metric);
+    for edge in &mut edges {
+        *edge = (edge.0.min(edge.1), edge.0.max(edge.1));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+/// Edges between near vertices that join all of them; some may occur twice.
+pub(crate) fn near_edges(metric: &impl Metric) -> Vec<(u32, u32)> {
+    match metric.geometry() {
         Geometry::Planar(points) => {
             let mut edges = delaunay_edges(points);
             add_neighbours(points, PLANAR_NEIGHBOURS, &mut edges);
@@ -33,13 +44,7 @@ pub(crate) fn candidates(metric: &impl Metric) -> Vec<(u32, u32)> {
             edges
         }
         Geometry::Abstract => abstract_neighbours(metric),
-    };
-    for edge in &mut edges {
-        *edge = (edge.0.min(edge.1), edge.0.max(edge.1));
     }
-    edges.sort_unstable();
-    edges.dedup();
-    edges
 }
 
 /// The nearest neighbours of each point, and a path through all of them, which contains a perfect matching.
