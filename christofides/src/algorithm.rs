@@ -5,8 +5,9 @@ use crate::euler::euler_circuit;
 use crate::exact::{exact_path, exact_tour};
 use crate::improve::{chained_improve, chained_improve_path};
 use crate::lower_bound::held_karp;
-use crate::matching::Solver;
-use crate::metric::Metric;
+use crate::matching::{Matching, Solver};
+use crate::metric::{Geometry, Metric};
+use crate::points::Points;
 use crate::shortcut::shortcut;
 use crate::spanning_tree::spanning_tree;
 use crate::tour::{Ends, Path, Tour};
@@ -21,7 +22,7 @@ pub struct Options {
     pub seed: u64,
     /// Kicks of the chained local search. Default 1000.
     pub kicks: usize,
-    /// Iterations of the lower bound's ascent; 0 for no bound. Default 100.
+    /// Iterations of the lower bound's ascent; 0 for no bound. Default 400.
     pub ascent_iterations: usize,
     /// Up to this number of vertices the instance is solved to proof. Default 10.
     pub exact_up_to: usize,
@@ -29,7 +30,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { seed: 1, kicks: 1000, ascent_iterations: 100, exact_up_to: 10 }
+        Options { seed: 1, kicks: 1000, ascent_iterations: 400, exact_up_to: 10 }
     }
 }
 
@@ -70,14 +71,14 @@ pub fn christofides(metric: &impl Metric) -> Result<Tour, Error> {
 }
 
 /// The steps of the algorithm; the bound holds only in a metric, a tour comes out of any symmetric distance.
-fn from_tree_and_matching(metric: &impl Metric) -> Result<Tour, Error> {
+pub(crate) fn from_tree_and_matching(metric: &impl Metric) -> Result<Tour, Error> {
     let n = metric.len();
     if n < 4 {
         return Ok(Tour::measured(metric, (0..n).collect()));
     }
     let mut edges = spanning_tree(metric);
     let odd = odd_vertices(n, &edges);
-    let matching = Solver::default().complete_unchecked(&Subset { metric, vertices: &odd })?;
+    let matching = match_subset(metric, &odd)?;
     edges.extend(matching.edges().map(|(i, j)| [odd[i], odd[j]]));
     shortcut(metric, &euler_circuit(n, &edges)?)
 }
@@ -88,6 +89,21 @@ fn odd_vertices(n: usize, edges: &[[usize; 2]]) -> Vec<usize> {
         is_odd[vertex] ^= true;
     }
     (0..n).filter(|&vertex| is_odd[vertex]).collect()
+}
+
+fn match_subset(metric: &impl Metric, vertices: &[usize]) -> Result<Matching, Error> {
+    let mut solver = Solver::default();
+    match metric.geometry() {
+        Geometry::Planar(points) => {
+            let points: Vec<[f64; 2]> = vertices.iter().map(|&v| points[v]).collect();
+            solver.complete_unchecked(&Points(&points))
+        }
+        Geometry::Spatial(points) => {
+            let points: Vec<[f64; 3]> = vertices.iter().map(|&v| points[v]).collect();
+            solver.complete_unchecked(&Points(&points))
+        }
+        Geometry::Abstract => solver.complete_unchecked(&Subset { metric, vertices }),
+    }
 }
 
 /// Some vertices of a metric.
@@ -121,7 +137,7 @@ pub fn solve(
 ) -> Result<Tour, Error> {
     validate_finite(metric)?;
     let n = metric.len();
-    if n <= options.exact_up_to.min(16) {
+    if n <= options.exact_up_to {
         return exact_tour(metric);
     }
     let start = from_tree_and_matching(metric)?;
@@ -146,19 +162,9 @@ pub fn solve_path(
     ends.validate(metric.len())?;
     validate_finite(metric)?;
     let n = metric.len();
-    if n <= options.exact_up_to.min(16) {
+    if n <= options.exact_up_to {
         return exact_path(metric, ends);
     }
-    let mut order: Vec<usize> = (0..n).collect();
-    match ends {
-        Ends::Free => {}
-        Ends::Start(start) => order.swap(0, start),
-        Ends::Both(start, end) => {
-            order.retain(|&v| v != start && v != end);
-            order.insert(0, start);
-            order.push(end);
-        }
-    }
-    let path = Path::new(metric, order)?;
+    let path = Path::measured(metric, ends.any_order(n));
     chained_improve_path(metric, path, ends, options.kicks, options.seed, should_stop)
 }

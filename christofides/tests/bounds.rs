@@ -63,3 +63,36 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// Both exact algorithms find the same length: subsets at ten vertices, branch and bound when one more lies on an edge.
+    #[test]
+    fn exact_algorithms_agree(points in prop::collection::vec([-1e3..1e3, -1e3..1e3], 10), at in 0..10_usize) {
+        let optimum = exact_tour(&Points(&points)).unwrap();
+        let (a, b) = (optimum.order()[at], optimum.order()[(at + 1) % 10]);
+        let mut more = points.clone();
+        more.push([0.5 * (points[a][0] + points[b][0]), 0.5 * (points[a][1] + points[b][1])]);
+        let larger = exact_tour(&Points(&more)).unwrap();
+        prop_assert!((larger.cost() - optimum.cost()).abs() <= 1e-9 * optimum.cost(), "{} {}", larger.cost(), optimum.cost());
+    }
+
+    /// The bound from below and the best tour known meet.
+    #[test]
+    fn branch_and_bound_is_bounded(points in prop::collection::vec([-1e3..1e3, -1e3..1e3], 11..30)) {
+        let metric = Points(&points);
+        let tour = exact_tour(&metric).unwrap();
+        prop_assert!(held_karp(&metric, 300).unwrap().value() <= tour.cost());
+        let n = points.len();
+        for ends in [Ends::Free, Ends::Start(3), Ends::Both(2, 5)] {
+            let path = exact_path(&metric, ends).unwrap();
+            let longest = (0..n).map(|k| metric.distance(tour.order()[k], tour.order()[(k + 1) % n])).fold(0.0, f64::max);
+            if ends == Ends::Free {
+                prop_assert!(path.cost() <= (tour.cost() - longest) * (1.0 + 1e-12));
+            }
+            let closing = metric.distance(path.order()[0], path.order()[n - 1]);
+            prop_assert!(path.cost() + closing >= tour.cost() * (1.0 - 1e-12));
+        }
+    }
+}

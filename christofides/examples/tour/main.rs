@@ -10,7 +10,7 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 /// Iterations of the ascent: more do not raise the bound by 1e-4.
-const ASCENT: usize = 1000;
+const ASCENT: usize = 600;
 
 struct Arguments {
     file: String,

@@ -1,37 +1,122 @@
 //! Small instances solved to proof.
 
+mod branch_and_bound;
 pub(crate) mod subsets;
 
+use crate::algorithm::from_tree_and_matching;
 use crate::error::Error;
+use crate::improve::{Pinned, chained_improve, chained_improve_path};
 use crate::metric::Metric;
 use crate::tour::{Ends, Path, Tour};
 use crate::validate::validate_finite;
 
-/// The shortest tour.
+/// Up to this number of vertices the subsets are searched.
+const SUBSETS_UP_TO: usize = 10;
+
+/// Most vertices that are taken: the search for a proof takes exponential time in the worst case.
+const LIMIT: usize = 100;
+
+/// Kicks that find the tour to be proven.
+const KICKS: usize = 200;
+
+/// The shortest tour: dynamic programming over subsets (Bellman 1962; Held and Karp 1962) for a few vertices, then branch
+/// and bound on 1-trees (Held and Karp 1971).
+///
+/// # Guarantee
+/// No tour is shorter by more than a relative 1e-11; `lower_bound()` says so.
 ///
 /// # Errors
-/// [`Error::TooManyVertices`], and distances that are not finite, symmetric and non-negative.
+/// [`Error::TooManyVertices`] above 100 vertices, and distances that are not finite, symmetric and non-negative.
+///
+/// # Complexity
+/// Exponential in the worst case; 40 points in the plane typically take some hundredths of a second.
+///
+/// # Examples
+/// ```
+/// use christofides::{Points, exact_tour};
+///
+/// let square = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+/// let tour = exact_tour(&Points(&square))?;
+/// assert_eq!((tour.cost(), tour.gap()), (4.0, Some(0.0)));
+/// # Ok::<(), christofides::Error>(())
+/// ```
 pub fn exact_tour(metric: &impl Metric) -> Result<Tour, Error> {
     validate_finite(metric)?;
     check_size(metric.len())?;
-    let tour = Tour::measured(metric, subsets::tour(metric));
+    let is_small = metric.len() <= SUBSETS_UP_TO;
+    let order = if is_small { subsets::tour(metric) } else { proven_tour(metric)? };
+    let tour = Tour::measured(metric, order);
     let bound = tour.cost();
     Ok(tour.with_lower_bound(bound))
 }
 
-/// The shortest path with the given ends.
+/// The shortest path with the given ends; see [`exact_tour`].
 ///
 /// # Errors
 /// As [`exact_tour`]; [`Error::VertexOutOfRange`] and [`Error::EqualEnds`].
 pub fn exact_path(metric: &impl Metric, ends: Ends) -> Result<Path, Error> {
+    let n = metric.len();
     validate_finite(metric)?;
-    ends.validate(metric.len())?;
-    check_size(metric.len())?;
-    let path = Path::measured(metric, subsets::path(metric, ends));
+    ends.validate(n)?;
+    check_size(n)?;
+    let order = if n <= SUBSETS_UP_TO { subsets::path(metric, ends) } else { proven_path(metric, ends)? };
+    let path = Path::measured(metric, order);
     let bound = path.cost();
     Ok(path.with_lower_bound(bound))
 }
 
+fn proven_tour(metric: &impl Metric) -> Result<Vec<usize>, Error> {
+    let start = chained_improve(metric, from_tree_and_matching(metric)?, KICKS, 1, &mut || false)?;
+    Ok(branch_and_bound::search(metric, start.into_order(), &[]))
+}
+
+/// The edges between the joint and the fixed ends are required, so that they need no bond.
+fn proven_path(metric: &impl Metric, ends: Ends) -> Result<Vec<usize>, Error> {
+    let n = metric.len();
+    let start = Path::measured(metric, ends.any_order(n));
+    let start = chained_improve_path(metric, start, ends, KICKS, 1, &mut || false)?;
+    let pinned = Pinned::new(metric, ends, 0.0);
+    let required = match ends {
+        Ends::Free => Vec::new(),
+        Ends::Start(start) => vec![(start, n)],
+        Ends::Both(start, end) => vec![(start, n), (end, n)],
+    };
+    Ok(pinned.open(branch_and_bound::search(&pinned, pinned.close(start.into_order()), &required)))
+}
+
 fn check_size(n: usize) -> Result<(), Error> {
-    if n > subsets::LIMIT { Err(Error::TooManyVertices { n, limit: subsets::LIMIT }) } else { Ok(()) }
+    if n > LIMIT { Err(Error::TooManyVertices { n, limit: LIMIT }) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::points::Points;
+    use proptest::prelude::*;
+
+    fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
+        let real = prop::collection::vec([-1e3..1e3, -1e3..1e3], 8..12);
+        let grid = prop::collection::vec([0..4i32, 0..4i32].prop_map(|p| p.map(f64::from)), 8..12);
+        prop_oneof![real, grid]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+
+        #[test]
+        fn branch_and_bound_agrees_with_subsets(points in points()) {
+            let metric = Points(&points);
+            let identity = || (0..points.len()).collect();
+            let best = Tour::measured(&metric, subsets::tour(&metric)).cost();
+            // From a bad start, so that the proof has something to find.
+            let found = Tour::measured(&metric, branch_and_bound::search(&metric, identity(), &[])).cost();
+            prop_assert!((found - best).abs() <= 1e-9 * best);
+            for ends in [Ends::Free, Ends::Start(2), Ends::Both(4, 1)] {
+                let best = Path::measured(&metric, subsets::path(&metric, ends)).cost();
+                let found = Path::measured(&metric, proven_path(&metric, ends).unwrap());
+                prop_assert!((found.cost() - best).abs() <= 1e-9 * best);
+                prop_assert!(super::super::improve::check_ends(found.order(), ends).is_ok());
+            }
+        }
+    }
 }

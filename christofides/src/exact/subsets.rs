@@ -3,15 +3,12 @@
 use crate::metric::Metric;
 use crate::tour::Ends;
 
-/// Most vertices that the table of `2^n n` entries is made for.
-pub(crate) const LIMIT: usize = 16;
-
-/// The best tour over at most [`LIMIT`] vertices: the best path from vertex 0 whose end is charged the way back.
+/// The best tour over a few vertices (the table has `2^n n` entries): the best path from vertex 0 whose end is charged the way back.
 pub(crate) fn tour(metric: &impl Metric) -> Vec<usize> {
     search(metric, Ends::Start(0), |v| metric.distance(v, 0))
 }
 
-/// The best path over at most [`LIMIT`] vertices.
+/// The best path over a few vertices.
 pub(crate) fn path(metric: &impl Metric, ends: Ends) -> Vec<usize> {
     let closing = |v| match ends {
         Ends::Both(_, end) if v != end => f64::INFINITY,

@@ -14,7 +14,9 @@ use crate::points::Points;
 use crate::tour::{Ends, Path, Tour};
 use chain::{Effort, chained};
 use neighbours::Neighbours;
-use pinned::Pinned;
+pub(crate) use pinned::Pinned;
+#[cfg(test)]
+pub(crate) use pinned::check_ends;
 
 /// Neighbours in the lists of the local search, all tried in every step: fewer make steps quicker and tours longer.
 const NEIGHBOURS: usize = 10;
