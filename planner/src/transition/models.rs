@@ -7,11 +7,12 @@ use nalgebra::{RealField, SVector, Vector3};
 use quad_dynamics::{
     Direction, Heading, JerkLimited, Motion, PointMass, RigidBody, ShapingLimits, ThrustRate, Vehicle,
 };
-use traj_opt::Dynamics;
+use traj_opt::{Dynamics, Hessian, Jacobian};
 
-/// Lets `traj-opt` see a model of `quad-dynamics`; the two crates do not know each other.
+/// Lets `traj-opt` see a model of `quad-dynamics`; the two crates do not know each other. The hessian takes of state,
+/// control and weight what the model needs.
 macro_rules! dynamics {
-    ($flight:ty, $nx:literal, $nu:literal) => {
+    ($flight:ty, $nx:literal, $nu:literal, |$model:ident, $state:ident, $control:ident, $weight:ident| $hessian:expr) => {
         impl Dynamics<$nx, $nu> for $flight {
             fn derivative<T: RealField + Copy>(
                 &self,
@@ -25,6 +26,37 @@ macro_rules! dynamics {
             fn is_autonomous(&self) -> bool {
                 true
             }
+
+            fn jacobian(
+                &self,
+                _time: f64,
+                state: &SVector<f64, $nx>,
+                control: &SVector<f64, $nu>,
+            ) -> Jacobian<$nx, $nu> {
+                let found = self.model.jacobian(state, control);
+                Jacobian {
+                    value: found.value,
+                    state: found.state,
+                    control: found.control,
+                    time: SVector::zeros(),
+                }
+            }
+
+            fn hessian(
+                &self,
+                _time: f64,
+                $state: &SVector<f64, $nx>,
+                $control: &SVector<f64, $nu>,
+                $weight: &SVector<f64, $nx>,
+            ) -> Hessian<$nx, $nu> {
+                let $model = &self.model;
+                let found = $hessian;
+                Hessian {
+                    state_state: found.state_state,
+                    state_control: found.state_control,
+                    ..Hessian::zeros()
+                }
+            }
         }
     };
 }
@@ -37,7 +69,7 @@ pub(crate) struct PointMassFlight {
     max_thrust: f64,
 }
 
-dynamics!(PointMassFlight, 6, 3);
+dynamics!(PointMassFlight, 6, 3, |model, state, _control, weight| model.hessian(state, weight));
 
 impl PointMassFlight {
     pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
@@ -82,7 +114,7 @@ pub(crate) struct JerkLimitedFlight {
     shaping: ShapingLimits,
 }
 
-dynamics!(JerkLimitedFlight, 9, 3);
+dynamics!(JerkLimitedFlight, 9, 3, |model, _state, _control, _weight| model.hessian());
 
 impl JerkLimitedFlight {
     pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
@@ -141,7 +173,7 @@ pub(crate) struct ThrustRateFlight {
     rates: Vector3<f64>,
 }
 
-dynamics!(ThrustRateFlight, 10, 4);
+dynamics!(ThrustRateFlight, 10, 4, |model, state, control, weight| model.hessian(state, control, weight));
 
 impl ThrustRateFlight {
     pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
@@ -187,7 +219,7 @@ pub(crate) struct RigidBodyFlight {
     rates: Vector3<f64>,
 }
 
-dynamics!(RigidBodyFlight, 13, 4);
+dynamics!(RigidBodyFlight, 13, 4, |model, state, control, weight| model.hessian(state, control, weight));
 
 impl RigidBodyFlight {
     /// Body rates are states here: their budget is never below what the loiters at both ends of a transition have.

@@ -14,6 +14,7 @@
 //!
 //! `derivative` is generic over the scalar, so that dual numbers give its derivatives.
 
+mod hessian;
 mod jacobian;
 mod jerk_limited;
 mod point_mass;
@@ -21,6 +22,7 @@ mod rigid_body;
 mod rotor_lag;
 mod thrust_rate;
 
+pub use hessian::Hessian;
 pub use jacobian::Jacobian;
 pub use jerk_limited::JerkLimited;
 pub use point_mass::PointMass;
