@@ -8,8 +8,13 @@ mod common;
 use common::quadcopter::*;
 use nalgebra::SVector;
 use std::ops::ControlFlow;
-use std::time::Instant;
 use traj_opt::{Dynamics, IntegrateOptions, Mesh, Options, Transcription, Workspace, solve_with};
+
+/// Time (ns) that this thread has spent on a processor.
+fn cpu_ns() -> u64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    text.split(' ').next().and_then(|v| v.parse().ok()).unwrap_or(0)
+}
 
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -80,11 +85,12 @@ fn run<D: Dynamics<NX, 4>, const NX: usize>(
     transcription: Transcription,
     verbose: bool,
 ) -> (bool, f64, usize) {
-    let guess = naive_guess(t, hover);
+    let begin = cpu_ns();
+    let guess = if std::env::var("OWN").is_ok() { cubic_guess(t) } else { naive_guess(t, hover) };
     let mesh = Mesh::uniform(segments);
     let tolerance = std::env::var("TOL").ok().and_then(|v| v.parse().ok()).unwrap_or(1e-8);
-    let options = Options::default().with_tolerance(tolerance);
-    let begin = Instant::now();
+    let mu = std::env::var("MU").ok().and_then(|v| v.parse().ok()).unwrap_or(0.1);
+    let options = Options::default().with_tolerance(tolerance).with_initial_mu(mu);
     let monitor = |i: &traj_opt::Iteration| {
         if verbose {
             println!(
@@ -102,7 +108,7 @@ fn run<D: Dynamics<NX, 4>, const NX: usize>(
         ControlFlow::Continue(())
     };
     let s = solve_with(workspace, t, &mesh, transcription, &guess, &options, monitor).expect("valid input");
-    let ms = begin.elapsed().as_secs_f64() * 1e3;
+    let ms = (cpu_ns() - begin) as f64 * 1e-6;
     let end = s.integrate(t.dynamics(), &IntegrateOptions::default()).map(|x| *x.end_state());
     let [p, v, a] = end.map_or([f64::NAN; 3], |x| miss(&x, &t.end));
     println!(

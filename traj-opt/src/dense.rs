@@ -37,7 +37,7 @@ pub(crate) fn array_mut<const N: usize>(x: &mut SVector<f64, N>) -> &mut [f64; N
 }
 
 /// `a b`.
-#[inline]
+#[inline(always)]
 pub(crate) fn mul<const R: usize, const K: usize, const C: usize>(
     a: &Matrix<R, K>,
     b: &Matrix<K, C>,
@@ -53,7 +53,7 @@ pub(crate) fn mul<const R: usize, const K: usize, const C: usize>(
 }
 
 /// `a x`.
-#[inline]
+#[inline(always)]
 pub(crate) fn mul_vec<const R: usize, const K: usize>(
     a: &Matrix<R, K>,
     x: &SVector<f64, K>,
@@ -66,7 +66,7 @@ pub(crate) fn mul_vec<const R: usize, const K: usize>(
 }
 
 /// `a' x`.
-#[inline]
+#[inline(always)]
 pub(crate) fn tr_mul_vec<const R: usize, const K: usize>(
     a: &Matrix<K, R>,
     x: &SVector<f64, K>,
@@ -75,7 +75,7 @@ pub(crate) fn tr_mul_vec<const R: usize, const K: usize>(
 }
 
 /// `a' b`.
-#[inline]
+#[inline(always)]
 pub(crate) fn tr_mul<const R: usize, const K: usize, const C: usize>(
     a: &Matrix<K, R>,
     b: &Matrix<K, C>,
@@ -84,7 +84,7 @@ pub(crate) fn tr_mul<const R: usize, const K: usize, const C: usize>(
 }
 
 /// `m += a x x'`.
-#[inline]
+#[inline(always)]
 pub(crate) fn rank_one<const N: usize>(m: &mut Matrix<N, N>, a: f64, x: &SVector<f64, N>) {
     for j in 0..N {
         axpy(&mut m.data.0[j], a * x[j], array(x));

@@ -36,6 +36,12 @@ const LENGTHEN: f64 = 3.0;
 const SHORT_STEP: f64 = 0.03;
 const SHORT_STEPS: usize = 4;
 const FAR_FROM_FEASIBLE: f64 = 1e-2;
+/// A guess that violates the constraints by more is first moved towards feasibility.
+const INFEASIBLE_GUESS: f64 = 0.1;
+const MAX_RESTORATIONS: usize = 4;
+/// Reductions of the violation that a restoration aims at when the method jams and when the line search fails.
+const RESTORED: f64 = 0.1;
+const ADMITTED: f64 = 0.9;
 /// Relaxation of bounds.
 const RELAX: f64 = 1e-8;
 
@@ -265,10 +271,14 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         mut monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
     ) -> Outcome {
         self.filter.start(self.theta(&self.values));
+        if self.primal_residual(&self.values) > INFEASIBLE_GUESS {
+            self.restore(program, RESTORED);
+            self.filter.start(self.theta(&self.values));
+        }
         self.least_squares_multipliers();
         let mut step_length = 1.0;
         let mut acceptable = 0;
-        let mut short_steps = 0;
+        let (mut short_steps, mut restorations) = (0, 0);
         for iteration in 0..=options.max_iterations {
             program.linearise(
                 &self.layout,
@@ -306,8 +316,18 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             }
             let stuck = step_length < SHORT_STEP && residuals.primal > FAR_FROM_FEASIBLE;
             short_steps = if stuck { short_steps + 1 } else { 0 };
-            if give_up_early && short_steps >= SHORT_STEPS {
-                return finish(Status::Infeasible);
+            if short_steps >= SHORT_STEPS {
+                // multipliers grow without bound when the method jams: reduce the violation alone and begin anew
+                let restored = restorations < MAX_RESTORATIONS && self.restore(program, RESTORED);
+                if !restored && give_up_early {
+                    return finish(Status::Infeasible);
+                }
+                restorations += 1;
+                short_steps = 0;
+                if restored {
+                    step_length = 1.0;
+                    continue;
+                }
             }
             self.update_barrier(options);
             if self.newton_direction().is_err() {
@@ -319,7 +339,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
                     self.damping = (self.damping * 100.0).max(DAMPING_STEP);
                     step_length = 0.0;
                 }
-                None if self.restore(program) => step_length = 0.0,
+                None if self.restore(program, ADMITTED) => step_length = 1.0,
                 None if acceptable > 0 => return finish(Status::Acceptable),
                 None if residuals.primal > options.acceptable_tolerance => return finish(Status::Infeasible),
                 None => return finish(Status::Stalled),
@@ -393,7 +413,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     }
 
     /// Multipliers that make the gradient of the Lagrangian least in the scaled norm; kept only if moderate.
-    fn least_squares_multipliers(&mut self) {
+    pub fn least_squares_multipliers(&mut self) {
         self.lq.copy_from(&self.lin.raw);
         self.lq.clear_hessian();
         for (i, slack) in self.rows.slack.iter().enumerate() {

@@ -10,14 +10,12 @@ use crate::Problem;
 
 /// Most steps of one restoration.
 const MAX_STEPS: usize = 60;
-/// Reduction of the violation that ends it.
-const KAPPA_RESTO: f64 = 0.9;
 /// Weight of the proximal term.
 const ZETA: f64 = 1.0;
 
 impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     /// Reduces the violation until the filter admits the point; false if that is not possible.
-    pub fn restore<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) -> bool {
+    pub fn restore<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>, reduction: f64) -> bool {
         let origin = self.origin();
         let start = origin.theta;
         if start < 1e-10 {
@@ -33,7 +31,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             }
             let theta = self.theta(&self.values);
             let phi = self.values.objective + self.bounds.value(&self.w, mu);
-            if theta <= KAPPA_RESTO * start && self.filter.admits(theta, phi) {
+            if theta <= reduction * start && self.filter.admits(theta, phi) {
                 success = true;
                 break;
             }
@@ -45,6 +43,15 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             self.duals.reset(&layout, n);
             self.layout = layout;
             self.bounds.start_multipliers(&self.w, self.mu);
+            program.linearise(
+                &self.layout,
+                &self.rows,
+                &self.w,
+                &self.duals,
+                &mut self.scratch,
+                &mut self.lin,
+            );
+            self.least_squares_multipliers();
         }
         success
     }

@@ -7,7 +7,7 @@
 //! semidefinite quadratic forms*, Econometrica 20, 1952).
 
 use super::quadratic::{Quadratic, Rhs, Step};
-use crate::dense::{array, array_mut, axpy, dot, mul, mul_vec, rank_one, tr_mul_vec};
+use crate::dense::{array, array_mut, axpy, dot, mul, mul_vec, rank_one};
 use nalgebra::{SMatrix, SVector};
 
 /// The reduced Hessian is not positive definite at the given segment (`n` for the border).
@@ -62,6 +62,8 @@ pub(crate) struct Riccati<const NX: usize> {
     border_rhs: Vec<f64>,
     solution: Vec<f64>,
     work: Vec<SVector<f64, NX>>,
+    /// Transposes of the dynamics, so that products with them run along columns.
+    transposed: Vec<SMatrix<f64, NX, NX>>,
 }
 
 impl<const NX: usize> Riccati<NX> {
@@ -87,6 +89,7 @@ impl<const NX: usize> Riccati<NX> {
         self.border_rhs.resize(nb, 0.0);
         self.solution.resize(nb, 0.0);
         self.work.resize(m, SVector::zeros());
+        self.transposed.resize(n, SMatrix::zeros());
     }
 
     /// Factorises.
@@ -97,6 +100,7 @@ impl<const NX: usize> Riccati<NX> {
         self.rho = reg.rho;
         self.terminal(lq, reg);
         for k in (0..self.n).rev() {
+            self.transposed[k] = lq.a[k].transpose();
             self.control_hessian(k, lq, reg);
             self.cholesky_and_gain(k)?;
             self.eliminate(k, lq, reg);
@@ -138,7 +142,7 @@ impl<const NX: usize> Riccati<NX> {
         let cross = &lq.cross[k * m..(k + 1) * m];
         for j in 0..m {
             self.work[j] = mul_vec(p, &b[j]) + cross[j];
-            self.gain[k * m + j] = lq.s[k * m + j] + tr_mul_vec(&lq.a[k], &self.work[j]);
+            self.gain[k * m + j] = lq.s[k * m + j] + mul_vec(&self.transposed[k], &self.work[j]);
         }
         for i in 0..m {
             for j in 0..=i {
@@ -171,7 +175,7 @@ impl<const NX: usize> Riccati<NX> {
         let (m, nb) = (self.m, self.n_border);
         let p = &self.value[k + 1];
         let pa = mul(p, &lq.a[k]);
-        let mut value = lq.q[k] + mul(&lq.a[k].transpose(), &pa);
+        let mut value = lq.q[k] + mul(&self.transposed[k], &pa);
         for i in 0..NX {
             value[(i, i)] += reg.delta * reg.state_weight[i];
         }
@@ -207,7 +211,7 @@ impl<const NX: usize> Riccati<NX> {
             self.border[column] += ap.dot(&next);
         }
         let l = &self.factor[k * m * m..(k + 1) * m * m];
-        let mut own = tr_mul_vec(&lq.a[k], &v);
+        let mut own = mul_vec(&self.transposed[k], &v);
         if column == 0 {
             own += lq.qp[k];
         }
@@ -314,7 +318,7 @@ impl<const NX: usize> Riccati<NX> {
                 self.border_rhs[j] += c.dot(&columns[j]);
             }
             let l = &self.factor[k * m * m..(k + 1) * m * m];
-            let mut own = rhs.gx[k] + tr_mul_vec(&lq.a[k], &v);
+            let mut own = rhs.gx[k] + mul_vec(&self.transposed[k], &v);
             for i in 0..m {
                 let mut value = rhs.gu[k * m + i] + lq.b[k * m + i].dot(&v) + lq.cross[k * m + i].dot(c);
                 for j in 0..i {

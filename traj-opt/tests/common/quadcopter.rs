@@ -342,6 +342,75 @@ pub fn naive_guess<D, const NX: usize>(t: &Transition<D, NX>, hover: Vector<4>) 
     })
 }
 
+/// A cubic through both end states, as fast as thrust allows, with the attitude that its acceleration and drag ask for.
+pub fn cubic_guess<D, const NX: usize>(t: &Transition<D, NX>) -> Guess<NX, 4> {
+    let mut low = 0.05;
+    let mut high = 1.0;
+    while peak_thrust(t, high) > THRUST_OF_GUESS * MAX_THRUST && high < 400.0 {
+        low = high;
+        high *= 2.0;
+    }
+    for _ in 0..12 {
+        let middle = 0.5 * (low + high);
+        if peak_thrust(t, middle) > THRUST_OF_GUESS * MAX_THRUST {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let n = 24;
+    let mut fractions = vec![];
+    let (mut states, mut controls) = (Vec::<Vector<NX>>::new(), vec![]);
+    let mut previous = t.start.fixed_rows::<4>(6).into_owned();
+    for k in 0..=n {
+        let s = k as f64 / n as f64;
+        let (p, v, force) = cubic(t, high, s);
+        let mut x = t.start * (1.0 - s) + t.end * s;
+        x.fixed_rows_mut::<3>(0).copy_from(&p);
+        x.fixed_rows_mut::<3>(3).copy_from(&v);
+        let blend = if k == 0 { previous } else { least_turn(&previous, &force.normalize()) };
+        previous = blend;
+        x.fixed_rows_mut::<4>(6).copy_from(&blend);
+        let mut u = if NX == 13 { Vector::<4>::repeat(force.norm() / 4.0) } else { Vector::zeros() };
+        if NX == 10 {
+            u[0] = force.norm();
+        }
+        fractions.push(s);
+        states.push(x);
+        controls.push(u);
+    }
+    Guess::from_samples(high, fractions, states, controls).expect("equal lengths")
+}
+
+const THRUST_OF_GUESS: f64 = 0.95;
+
+/// Position, velocity and thrust vector of the cubic at a fraction of its duration.
+fn cubic<D, const NX: usize>(t: &Transition<D, NX>, time: f64, s: f64) -> (Vector<3>, Vector<3>, Vector<3>) {
+    let part = |x: &Vector<NX>, i: usize| Vector::<3>::new(x[i], x[i + 1], x[i + 2]);
+    let (p0, p1) = (part(&t.start, 0), part(&t.end, 0));
+    let (m0, m1) = (part(&t.start, 3) * time, part(&t.end, 3) * time);
+    let (c2, c3) = ((p1 - p0) * 3.0 - m0 * 2.0 - m1, (p0 - p1) * 2.0 + m0 + m1);
+    let p = p0 + m0 * s + c2 * (s * s) + c3 * (s * s * s);
+    let v = (m0 + c2 * (2.0 * s) + c3 * (3.0 * s * s)) / time;
+    let a = (c2 * 2.0 + c3 * (6.0 * s)) / (time * time);
+    let force = (a + Vector::<3>::z() * GRAVITY) * MASS + v * (0.5 * DRAG * v.norm());
+    (p, v, force)
+}
+
+fn peak_thrust<D, const NX: usize>(t: &Transition<D, NX>, time: f64) -> f64 {
+    (0..=8).map(|k| cubic(t, time, k as f64 / 8.0).2.norm()).fold(0.0, f64::max)
+}
+
+/// Turns the attitude `q` by the least angle that brings its z axis to `axis`.
+fn least_turn(q: &Vector<4>, axis: &Vector<3>) -> Vector<4> {
+    let q = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]));
+    let from = q * Vector::<3>::z();
+    let turn = nalgebra::UnitQuaternion::rotation_between(&from, axis)
+        .unwrap_or_else(nalgebra::UnitQuaternion::identity);
+    let out = turn * q;
+    Vector::<4>::new(out.w, out.i, out.j, out.k)
+}
+
 pub fn hover_thrust_rate() -> Vector<4> {
     Vector::from([MASS * GRAVITY, 0.0, 0.0, 0.0])
 }
