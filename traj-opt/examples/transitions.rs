@@ -66,8 +66,9 @@ fn main() {
     let mut iterations: Vec<usize> = rows.iter().map(|r| r.2).collect();
     iterations.sort_unstable();
     println!(
-        "solved {solved} of {}; median {:.2} ms, 95th {:.2} ms, median iterations {}",
+        "solved {solved} of {}; mean {:.2} ms, median {:.2} ms, 95th {:.2} ms, median iterations {}",
         rows.len(),
+        times.iter().sum::<f64>() / times.len() as f64,
         times[times.len() / 2],
         times[times.len() * 95 / 100],
         iterations[iterations.len() / 2]

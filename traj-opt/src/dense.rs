@@ -5,6 +5,32 @@
 
 use nalgebra::{SMatrix, SVector};
 
+/// Work to be compiled for several instruction sets.
+pub(crate) trait Kernel {
+    /// What the work results in.
+    type Output;
+
+    /// Does the work; `#[inline(always)]`, as must be everything inside that is to profit.
+    fn run(self) -> Self::Output;
+}
+
+struct Dispatched<K>(K);
+
+impl<K: Kernel> pulp::WithSimd for Dispatched<K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> K::Output {
+        self.0.run()
+    }
+}
+
+/// Runs a kernel compiled for the widest vector instructions that the processor has. Products and sums stay separate
+/// operations, so the results are the same to the bit whatever the instructions.
+pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    pulp::Arch::new().dispatch(Dispatched(kernel))
+}
+
 type Matrix<const R: usize, const C: usize> = SMatrix<f64, R, C>;
 
 /// `y += a x`.
@@ -44,10 +70,36 @@ pub(crate) fn mul<const R: usize, const K: usize, const C: usize>(
 ) -> Matrix<R, C> {
     let mut out = Matrix::<R, C>::zeros();
     for j in 0..C {
-        let column = &mut out.data.0[j];
+        let mut column = [0.0; R];
         for k in 0..K {
-            axpy(column, b.data.0[j][k], &a.data.0[k]);
+            axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
         }
+        out.data.0[j] = column;
+    }
+    out
+}
+
+/// `a b` for an `a` of which some columns are zero: derivatives of a model by variables that it does not depend on.
+#[inline(always)]
+pub(crate) fn mul_thin<const R: usize, const K: usize, const C: usize>(
+    a: &Matrix<R, K>,
+    b: &Matrix<K, C>,
+) -> Matrix<R, C> {
+    let mut used = [0; K];
+    let mut n_used = 0;
+    for k in 0..K {
+        if a.data.0[k].iter().any(|&v| v != 0.0) {
+            used[n_used] = k;
+            n_used += 1;
+        }
+    }
+    let mut out = Matrix::<R, C>::zeros();
+    for j in 0..C {
+        let mut column = [0.0; R];
+        for &k in &used[..n_used] {
+            axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
+        }
+        out.data.0[j] = column;
     }
     out
 }

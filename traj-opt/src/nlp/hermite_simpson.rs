@@ -7,7 +7,7 @@ use super::layout::Layout;
 use super::program::{Duals, Linearisation, Program, Values, add_control_block};
 use super::running::{self, PointModel, PointTerms};
 use super::trapezoidal::add_end;
-use crate::dense::{mul, mul_vec, vector};
+use crate::dense::{mul, mul_thin, mul_vec, vector};
 use crate::{Dynamics, Problem};
 use nalgebra::{SMatrix, SVector};
 
@@ -45,12 +45,14 @@ pub(crate) fn evaluate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 }
 
 /// Derivatives of segment `k`.
+#[inline(always)]
 pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     program: &Program<NX, NU, P>,
     layout: &Layout,
     k: usize,
     w: &[f64],
     duals: &Duals<NX>,
+    second: bool,
     out: &mut Linearisation<NX, NU>,
 ) {
     let (lambda, eta) = (duals.defect[k], duals.middle[k]);
@@ -64,7 +66,8 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let state_offsets = [layout.state(k), layout.middle(k), layout.state(k + 1)];
     for i in 0..3 {
         let omega = lambda * WEIGHT[i] + eta * HERMITE[i];
-        let terms = PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i]), &omega, WEIGHT[i]);
+        let terms =
+            PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i], second), &omega, WEIGHT[i]);
         out.add_point_gradient(layout, (state_offsets[i], layout.control(k, i)), &terms);
         if i == 1 {
             add_middle(layout, k, &terms, out);
@@ -75,6 +78,7 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     eliminate(layout, k, &at, &model, out);
 }
 
+#[inline(always)]
 fn add_middle<const NX: usize, const NU: usize>(
     layout: &Layout,
     k: usize,
@@ -93,6 +97,7 @@ fn add_middle<const NX: usize, const NU: usize>(
 }
 
 /// Resolves the linearised defects for the middle and end states.
+#[inline(always)]
 fn eliminate<const NX: usize, const NU: usize>(
     layout: &Layout,
     k: usize,
@@ -105,9 +110,9 @@ fn eliminate<const NX: usize, const NU: usize>(
     let by_first = one * 0.5 + model[0].f.state * (h * HERMITE[0]);
     let by_next = one * 0.5 + model[2].f.state * (h * HERMITE[2]);
     let defect_by = model[1].f.state * (h * WEIGHT[1]);
-    let implicit = one - model[2].f.state * (h * WEIGHT[2]) - mul(&defect_by, &by_next);
+    let implicit = one - model[2].f.state * (h * WEIGHT[2]) - mul_thin(&defect_by, &by_next);
     let resolve = implicit.try_inverse().unwrap_or_else(SMatrix::identity);
-    let explicit = one + model[0].f.state * (h * WEIGHT[0]) + mul(&defect_by, &by_first);
+    let explicit = one + model[0].f.state * (h * WEIGHT[0]) + mul_thin(&defect_by, &by_first);
     let a = mul(&resolve, &explicit);
     let (mut defect_p, mut middle_p) = (SVector::zeros(), SVector::zeros());
     for i in 0..3 {
@@ -119,7 +124,7 @@ fn eliminate<const NX: usize, const NU: usize>(
     for i in 0..3 {
         let g = &model[i].f.control;
         let direct = g * (h * HERMITE[i]);
-        let b = mul(&resolve, &(g * (h * WEIGHT[i]) + mul(&defect_by, &direct)));
+        let b = mul(&resolve, &(g * (h * WEIGHT[i]) + mul_thin(&defect_by, &direct)));
         let su = direct + mul(&by_next, &b);
         for j in 0..NU {
             out.raw.b[k * layout.m + i * NU + j] = b.column(j).into_owned();

@@ -38,6 +38,8 @@ const SHORT_STEPS: usize = 4;
 const FAR_FROM_FEASIBLE: f64 = 1e-2;
 /// A guess that violates the constraints by more is first moved towards feasibility.
 const INFEASIBLE_GUESS: f64 = 0.1;
+/// Regularisation above which it is tried before none.
+const SKIP_TRIAL: f64 = 1e-4;
 const MAX_RESTORATIONS: usize = 4;
 /// Reductions of the violation that a restoration aims at when the method jams and when the line search fails.
 const RESTORED: f64 = 0.1;
@@ -395,6 +397,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
 
     /// Factorises with as little regularisation as convexity needs (IPOPT's algorithm IC) and computes the direction.
     fn newton_direction(&mut self) -> Result<(), NotConvex> {
+        std::mem::swap(&mut self.lin.raw, &mut self.lq);
         let system = System {
             layout: &self.layout,
             rows: &self.rows,
@@ -457,11 +460,20 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
 
     fn factorise(&mut self, riccati: &mut Riccati<NX>) -> Result<(), NotConvex> {
         let least = self.damping;
-        if riccati.factorise(&self.lq, &self.regularisation(least)).is_ok() {
+        // a Hessian that was indefinite usually still is: do not factorise it in vain
+        let repeated = self.delta / 3.0;
+        if repeated > SKIP_TRIAL && riccati.factorise(&self.lq, &self.regularisation(repeated)).is_ok() {
+            self.delta = repeated;
+            return Ok(());
+        }
+        if repeated <= SKIP_TRIAL && riccati.factorise(&self.lq, &self.regularisation(least)).is_ok() {
             self.delta = 0.0;
             return Ok(());
         }
         let mut delta = if self.last_delta() > 0.0 { (self.last_delta() / 3.0).max(1e-20) } else { 1e-4 };
+        if repeated > SKIP_TRIAL {
+            delta = 8.0 * repeated;
+        }
         let growth = if self.last_delta() > 0.0 { 8.0 } else { 100.0 };
         while delta < 1e40 {
             if riccati.factorise(&self.lq, &self.regularisation(delta)).is_ok() {

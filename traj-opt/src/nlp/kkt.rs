@@ -5,7 +5,8 @@ use super::boundary::BoundaryRows;
 use super::layout::{Layout, Place};
 use super::program::{Duals, Linearisation, Values};
 use super::quadratic::{Quadratic, Rhs, Step};
-use crate::dense::{axpy, mul, mul_vec, rank_one, tr_mul, tr_mul_vec, vector};
+use crate::dense::Kernel;
+use crate::dense::{axpy, dispatch, mul_thin, mul_vec, rank_one, tr_mul, tr_mul_vec, vector};
 use nalgebra::{SMatrix, SVector};
 
 /// Newton direction of all variables and multipliers.
@@ -26,10 +27,14 @@ pub(crate) struct System<'a, const NX: usize, const NU: usize> {
 }
 
 impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
-    /// Adds bounds, path constraints and middle states to the raw Hessian.
+    /// Adds bounds, path constraints and middle states to `lq`, which holds the raw derivatives.
     pub fn assemble(&self, lq: &mut Quadratic<NX>) {
+        dispatch(Assemble { system: self, lq });
+    }
+
+    #[inline(always)]
+    fn assemble_here(&self, lq: &mut Quadratic<NX>) {
         let layout = self.layout;
-        lq.copy_from(&self.lin.raw);
         for knot in 0..=layout.n_segments {
             for i in 0..NX {
                 lq.q[knot][(i, i)] += self.bounds.sigma(self.w, layout.state(knot) + i);
@@ -86,6 +91,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     }
 
     /// Second derivatives at the middle of segment `k` with bounds and path constraints.
+    #[inline(always)]
     fn middle_hessian(&self, k: usize) -> (SMatrix<f64, NX, NX>, SMatrix<f64, NX, NU>, SVector<f64, NX>) {
         let layout = self.layout;
         let middle = &self.lin.middles[k];
@@ -108,12 +114,13 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     }
 
     /// Maps the second derivatives at the middle states to the segments' other variables.
+    #[inline(always)]
     fn add_middles(&self, lq: &mut Quadratic<NX>) {
         let m = self.layout.m;
         for (k, middle) in self.lin.middles.iter().enumerate() {
             let (hxx, hxu, hxp) = self.middle_hessian(k);
             let su = &self.lin.middle_su[k * m..(k + 1) * m];
-            let hx = mul(&hxx, &middle.sx);
+            let hx = mul_thin(&hxx, &middle.sx);
             lq.q[k] += tr_mul(&middle.sx, &hx);
             let hp = mul_vec(&hxx, &middle.sp) + hxp;
             lq.qp[k] += tr_mul_vec(&middle.sx, &hp);
@@ -297,5 +304,19 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         let defect = tr_mul_vec(&self.lin.resolve[k], &costate);
         out.duals.middle[k] = force + tr_mul_vec(&middle.defect_by, &defect);
         out.duals.defect[k] = defect;
+    }
+}
+
+struct Assemble<'a, 'b, const NX: usize, const NU: usize> {
+    system: &'a System<'b, NX, NU>,
+    lq: &'a mut Quadratic<NX>,
+}
+
+impl<const NX: usize, const NU: usize> Kernel for Assemble<'_, '_, NX, NU> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.system.assemble_here(self.lq);
     }
 }

@@ -5,7 +5,7 @@ use super::layout::Layout;
 use super::quadratic::Quadratic;
 use super::running::{PointTerms, PointTime};
 use super::{boundary, hermite_simpson, path, runge_kutta, trapezoidal};
-use crate::dense::vector;
+use crate::dense::{Kernel, dispatch, vector};
 use crate::{Bounds, Mesh, Problem, Scales, Transcription};
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual2SVec64, Dual64, DualSVec64, HyperDual64, HyperDualSVec64};
@@ -78,6 +78,8 @@ pub(crate) struct Linearisation<const NX: usize, const NU: usize> {
 /// Scratch for functions that write into slices of dual numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch<const NX: usize, const NU: usize> {
+    /// Leaves second derivatives out.
+    pub first_order_only: bool,
     pub f: Vec<f64>,
     pub x: Vec<DualSVec64<NX>>,
     pub u: Vec<DualSVec64<NU>>,
@@ -242,19 +244,32 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
         out.raw.clear_hessian();
         out.objective.fill(0.0);
         out.lagrangian.fill(0.0);
+        let second = !scratch.first_order_only;
+        dispatch(Segments { program: self, layout, w, duals, second, scratch, out });
+        path::linearise(self, layout, w, duals, scratch, out);
+        boundary::linearise(self, layout, rows, w, duals, scratch, out);
+    }
+
+    #[inline(always)]
+    fn linearise_segments(
+        &self,
+        layout: &Layout,
+        w: &[f64],
+        duals: &Duals<NX>,
+        second: bool,
+        scratch: &mut Scratch<NX, NU>,
+        out: &mut Linearisation<NX, NU>,
+    ) {
         for k in 0..layout.n_segments {
             match self.transcription {
                 Transcription::RungeKutta { substeps } => {
-                    runge_kutta::linearise(self, layout, substeps, k, w, duals, &mut scratch.stages, out);
+                    runge_kutta::linearise(self, layout, substeps, k, w, duals, scratch, out);
                 }
-                Transcription::Trapezoidal => trapezoidal::linearise(self, layout, k, w, duals, out),
-                Transcription::HermiteSimpson => hermite_simpson::linearise(self, layout, k, w, duals, out),
+                Transcription::Trapezoidal => trapezoidal::linearise(self, layout, k, w, duals, second, out),
+                Transcription::HermiteSimpson => {
+                    hermite_simpson::linearise(self, layout, k, w, duals, second, out);
+                }
             }
-        }
-        path::linearise(self, layout, w, duals, scratch, out);
-        boundary::linearise(self, layout, rows, w, duals, scratch, out);
-        for i in 0..layout.n_variables {
-            out.lagrangian[i] += 0.0;
         }
     }
 
@@ -266,6 +281,25 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
     /// Control vector of a segment.
     pub fn control(&self, layout: &Layout, w: &[f64], segment: usize, local: usize) -> SVector<f64, NU> {
         vector(w, layout.control(segment, local))
+    }
+}
+
+struct Segments<'a, 'b, const NX: usize, const NU: usize, P> {
+    program: &'a Program<'b, NX, NU, P>,
+    layout: &'a Layout,
+    w: &'a [f64],
+    duals: &'a Duals<NX>,
+    second: bool,
+    scratch: &'a mut Scratch<NX, NU>,
+    out: &'a mut Linearisation<NX, NU>,
+}
+
+impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Kernel for Segments<'_, '_, NX, NU, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.program.linearise_segments(self.layout, self.w, self.duals, self.second, self.scratch, self.out);
     }
 }
 

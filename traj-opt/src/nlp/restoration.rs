@@ -62,7 +62,9 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.duals.reset(&layout, self.rows.len());
         self.layout = layout;
         self.bounds.start_multipliers(&self.w, self.mu);
+        self.scratch.first_order_only = true;
         program.linearise(&self.layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
+        self.scratch.first_order_only = false;
         self.lin.raw.clear_hessian();
         for middle in &mut self.lin.middles {
             middle.hxx.fill(0.0);
@@ -70,6 +72,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             middle.hxp.fill(0.0);
         }
         self.lin.lagrangian.fill(0.0);
+        std::mem::swap(&mut self.lin.raw, &mut self.lq);
         let system = System {
             layout: &self.layout,
             rows: &self.rows,

@@ -7,7 +7,7 @@
 //! semidefinite quadratic forms*, Econometrica 20, 1952).
 
 use super::quadratic::{Quadratic, Rhs, Step};
-use crate::dense::{array, array_mut, axpy, dot, mul, mul_vec, rank_one};
+use crate::dense::{Kernel, array, array_mut, axpy, dispatch, dot, mul, mul_vec, rank_one};
 use nalgebra::{SMatrix, SVector};
 
 /// The reduced Hessian is not positive definite at the given segment (`n` for the border).
@@ -97,6 +97,11 @@ impl<const NX: usize> Riccati<NX> {
     /// # Errors
     /// [`NotConvex`] if the Hessian is not positive definite on the null space of the constraints.
     pub fn factorise(&mut self, lq: &Quadratic<NX>, reg: &Regularisation<NX>) -> Result<(), NotConvex> {
+        dispatch(Factorise { riccati: self, lq, reg })
+    }
+
+    #[inline(always)]
+    fn factorise_here(&mut self, lq: &Quadratic<NX>, reg: &Regularisation<NX>) -> Result<(), NotConvex> {
         self.rho = reg.rho;
         self.terminal(lq, reg);
         for k in (0..self.n).rev() {
@@ -110,6 +115,7 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     /// Value function at the last knot: cost, penalty of the end conditions, border columns.
+    #[inline(always)]
     fn terminal(&mut self, lq: &Quadratic<NX>, reg: &Regularisation<NX>) {
         let (n, nb) = (self.n, self.n_border);
         let mut p = lq.q[n];
@@ -135,6 +141,7 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     /// `R~ = r + b' P b + b' cross + cross' b` into `factor`, `S~ = s + A' (P b + cross)` into `gain`.
+    #[inline(always)]
     fn control_hessian(&mut self, k: usize, lq: &Quadratic<NX>, reg: &Regularisation<NX>) {
         let m = self.m;
         let p = &self.value[k + 1];
@@ -154,6 +161,7 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     /// Factorises `R~ = L L'` in place and turns `S~'` into `L^-1 S~'`.
+    #[inline(always)]
     fn cholesky_and_gain(&mut self, k: usize) -> Result<(), NotConvex> {
         let m = self.m;
         cholesky(&mut self.factor[k * m * m..(k + 1) * m * m], m)?;
@@ -171,6 +179,7 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     /// Value function at knot `k`.
+    #[inline(always)]
     fn eliminate(&mut self, k: usize, lq: &Quadratic<NX>, reg: &Regularisation<NX>) {
         let (m, nb) = (self.m, self.n_border);
         let p = &self.value[k + 1];
@@ -198,6 +207,7 @@ impl<const NX: usize> Riccati<NX> {
         }
     }
 
+    #[inline(always)]
     fn eliminate_column(&mut self, k: usize, column: usize, lq: &Quadratic<NX>) {
         let (m, nb) = (self.m, self.n_border);
         let next = self.columns[(k + 1) * nb + column];
@@ -231,6 +241,7 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     /// Eliminates the free components of the start state.
+    #[inline(always)]
     fn start_state(&mut self, lq: &Quadratic<NX>) -> Result<(), NotConvex> {
         let (ns, nb) = (self.free_start.len(), self.n_border);
         for j in 1..nb {
@@ -292,11 +303,10 @@ impl<const NX: usize> Riccati<NX> {
         rhs: &Rhs<NX>,
         step: &mut Step<NX>,
     ) {
-        self.backward(lq, state_weight, rhs);
-        self.solve_border(rhs, step);
-        self.forward(lq, rhs, step);
+        dispatch(Solve { riccati: self, lq, state_weight, rhs, step });
     }
 
+    #[inline(always)]
     fn backward(&mut self, lq: &Quadratic<NX>, state_weight: &SVector<f64, NX>, rhs: &Rhs<NX>) {
         let (n, m, nb) = (self.n, self.m, self.n_border);
         let mut linear = rhs.gx[n];
@@ -336,7 +346,7 @@ impl<const NX: usize> Riccati<NX> {
         }
     }
 
-    fn solve_border(&mut self, rhs: &Rhs<NX>, step: &mut Step<NX>) {
+    fn solve_border(&mut self, step: &mut Step<NX>) {
         let (ns, nb) = (self.free_start.len(), self.n_border);
         let mc = nb - 1;
         for (i, &row) in self.free_start.iter().enumerate() {
@@ -363,9 +373,9 @@ impl<const NX: usize> Riccati<NX> {
         forward(&self.border_factor, mc, &mut z[..mc]);
         backward_substitute(&self.border_factor, mc, &mut z[..mc]);
         step.boundary.copy_from_slice(&z[..mc]);
-        let _ = rhs;
     }
 
+    #[inline(always)]
     fn forward(&mut self, lq: &Quadratic<NX>, rhs: &Rhs<NX>, step: &mut Step<NX>) {
         let (n, m, nb, ns) = (self.n, self.m, self.n_border, self.free_start.len());
         let first = usize::from(!self.free_time);
@@ -408,6 +418,40 @@ impl<const NX: usize> Riccati<NX> {
     }
 }
 
+struct Factorise<'a, 'b, const NX: usize> {
+    riccati: &'a mut Riccati<NX>,
+    lq: &'a Quadratic<NX>,
+    reg: &'a Regularisation<'b, NX>,
+}
+
+impl<const NX: usize> Kernel for Factorise<'_, '_, NX> {
+    type Output = Result<(), NotConvex>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.riccati.factorise_here(self.lq, self.reg)
+    }
+}
+
+struct Solve<'a, const NX: usize> {
+    riccati: &'a mut Riccati<NX>,
+    lq: &'a Quadratic<NX>,
+    state_weight: &'a SVector<f64, NX>,
+    rhs: &'a Rhs<NX>,
+    step: &'a mut Step<NX>,
+}
+
+impl<const NX: usize> Kernel for Solve<'_, NX> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.riccati.backward(self.lq, self.state_weight, self.rhs);
+        self.riccati.solve_border(self.step);
+        self.riccati.forward(self.lq, self.rhs, self.step);
+    }
+}
+
 /// Penalty of boundary row `j`: `rho` over the squared scaled length of the row. Zero for inequalities and for rows that
 /// involve the start state, to which the recursion cannot add it.
 fn penalty<const NX: usize>(rho: f64, lq: &Quadratic<NX>, weight: &SVector<f64, NX>, j: usize) -> f64 {
@@ -419,6 +463,7 @@ fn penalty<const NX: usize>(rho: f64, lq: &Quadratic<NX>, weight: &SVector<f64, 
 }
 
 /// In-place Cholesky factorisation of a row-major matrix's lower triangle.
+#[inline(always)]
 fn cholesky(a: &mut [f64], n: usize) -> Result<(), NotConvex> {
     for j in 0..n {
         let original = a[j * n + j];

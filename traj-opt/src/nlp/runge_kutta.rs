@@ -4,10 +4,10 @@
 //! adjoint), so that a stage costs one contracted Hessian and one congruence.
 
 use super::layout::Layout;
-use super::program::{Duals, Linearisation, Program, Values, add_control_block};
+use super::program::{Duals, Linearisation, Program, Scratch, Values, add_control_block};
 use super::running::{self, PointModel};
-use crate::dense::{mul, mul_vec, tr_mul, tr_mul_vec};
-use crate::{Dynamics, Problem};
+use crate::dense::{mul_thin, mul_vec, tr_mul, tr_mul_vec};
+use crate::{Dynamics, Hessian, Problem};
 use nalgebra::{SMatrix, SVector};
 
 const NODE: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
@@ -101,6 +101,7 @@ pub(crate) fn step_states<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 
 /// Derivatives of segment `k`.
 #[expect(clippy::too_many_arguments, reason = "the inputs of one step of one algorithm")]
+#[inline(always)]
 pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     program: &Program<NX, NU, P>,
     layout: &Layout,
@@ -108,10 +109,11 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     k: usize,
     w: &[f64],
     duals: &Duals<NX>,
-    stages: &mut Vec<Stage<NX, NU>>,
+    scratch: &mut Scratch<NX, NU>,
     out: &mut Linearisation<NX, NU>,
 ) {
     let u = program.control(layout, w, k, 0);
+    let stages = &mut scratch.stages;
     let total = propagate(program, layout, substeps, k, w, &u, stages);
     let lambda = duals.defect[k];
     out.raw.a[k] = total.x;
@@ -123,6 +125,9 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     out.add_gradient(layout.state(k + 1), (-lambda).as_slice());
     out.add_gradient(layout.control(k, 0), tr_mul_vec(&total.u, &lambda).as_slice());
     out.lagrangian[layout.time] += total.p.dot(&lambda);
+    if scratch.first_order_only {
+        return;
+    }
     let (h, h_rate) = step_length(program, layout, substeps, k, w);
     adjoint(program, layout, k, (h, h_rate), &u, &lambda, stages, out);
 }
@@ -139,6 +144,7 @@ fn step_length<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 }
 
 /// Forward sweep: fills `stages` and returns the sensitivity of the end state.
+#[inline(always)]
 fn propagate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     program: &Program<NX, NU, P>,
     layout: &Layout,
@@ -168,8 +174,8 @@ fn propagate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
             }
             let model = running::differentiate(program.problem, at.time, &state, u);
             let slope = Sensitivity {
-                x: mul(&model.f.state, &by_state.x),
-                u: mul(&model.f.state, &by_state.u) + model.f.control,
+                x: mul_thin(&model.f.state, &by_state.x),
+                u: mul_thin(&model.f.state, &by_state.u) + model.f.control,
                 p: mul_vec(&model.f.state, &by_state.p) + model.f.time * at.t_rate,
             };
             end.add(h * WEIGHT[i], &slope);
@@ -185,6 +191,7 @@ fn propagate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 
 /// Backward sweep: adds second derivatives and the gradient of the running cost.
 #[expect(clippy::too_many_arguments, reason = "the inputs of one step of one algorithm")]
+#[inline(always)]
 fn adjoint<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     program: &Program<NX, NU, P>,
     layout: &Layout,
@@ -206,7 +213,11 @@ fn adjoint<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
             if i < 3 {
                 slope_weight += state_weight * NODE[i + 1];
             }
-            add_stage(program, layout, k, (h, h_rate), (u, i), stage, &slope_weight, out);
+            add_rates(layout, k, (h, h_rate), i, stage, &slope_weight, out);
+            let (weight, weight_l) = (slope_weight * h, WEIGHT[i] * h);
+            let hess =
+                running::weighted_hessian(program.problem, stage.time, &stage.state, u, &weight, weight_l);
+            add_hessian(layout, k, stage, &hess, out);
             state_weight = tr_mul_vec(&stage.model.f.state, &slope_weight) * h;
             if let Some(running) = &stage.model.running {
                 state_weight += running.x * (h * WEIGHT[i]);
@@ -217,33 +228,23 @@ fn adjoint<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     }
 }
 
-/// Second derivatives of `h slope_weight . f + h b L` at one stage, mapped to (x, u, p) of the segment.
-#[expect(clippy::too_many_arguments, reason = "the inputs of one step of one algorithm")]
-fn add_stage<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
-    program: &Program<NX, NU, P>,
+/// Second derivatives that involve the step length, and gradients of the running cost, at one stage.
+#[inline(always)]
+fn add_rates<const NX: usize, const NU: usize>(
     layout: &Layout,
     k: usize,
     (h, h_rate): (f64, f64),
-    (u, i): (&SVector<f64, NU>, usize),
+    i: usize,
     stage: &Stage<NX, NU>,
     slope_weight: &SVector<f64, NX>,
     out: &mut Linearisation<NX, NU>,
 ) {
     let s = &stage.by_state;
-    let wl = WEIGHT[i] * h;
-    let hess =
-        running::weighted_hessian(program.problem, stage.time, &stage.state, u, &(slope_weight * h), wl);
-    let xu = mul(&hess.state_state, &s.u) + hess.state_control;
-    let xp = mul_vec(&hess.state_state, &s.p) + hess.state_time * stage.t_rate;
-    let mut up = tr_mul_vec(&s.u, &xp)
-        + tr_mul_vec(&hess.state_control, &s.p)
-        + hess.control_time * stage.t_rate
-        + tr_mul_vec(&stage.slope.u, slope_weight) * h_rate;
-    let mut qp = tr_mul_vec(&s.x, &xp) + tr_mul_vec(&stage.slope.x, slope_weight) * h_rate;
-    let mut pp = s.p.dot(&(xp + hess.state_time * stage.t_rate))
-        + hess.time_time * stage.t_rate * stage.t_rate
-        + 2.0 * h_rate * stage.slope.p.dot(slope_weight);
+    let mut up = tr_mul_vec(&stage.slope.u, slope_weight) * h_rate;
+    let mut qp = tr_mul_vec(&stage.slope.x, slope_weight) * h_rate;
+    let mut pp = 2.0 * h_rate * stage.slope.p.dot(slope_weight);
     if let Some(r) = &stage.model.running {
+        let wl = WEIGHT[i] * h;
         let (rx, ru) = (tr_mul_vec(&s.x, &r.x), tr_mul_vec(&s.u, &r.x) + r.u);
         let rp = r.x.dot(&s.p) + r.t * stage.t_rate;
         let b = WEIGHT[i] * h_rate;
@@ -258,8 +259,30 @@ fn add_stage<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         out.add_gradient(layout.control(k, 0), (ru * wl).as_slice());
         out.lagrangian[layout.time] += gp;
     }
+    for j in 0..NU {
+        out.raw.rp[k * layout.m + j] += up[j];
+    }
+    out.raw.qp[k] += qp;
+    out.raw.hpp += pp;
+}
+
+/// Maps the second derivatives at a stage to (x, u, p) of the segment.
+#[inline(always)]
+fn add_hessian<const NX: usize, const NU: usize>(
+    layout: &Layout,
+    k: usize,
+    stage: &Stage<NX, NU>,
+    hess: &Hessian<NX, NU>,
+    out: &mut Linearisation<NX, NU>,
+) {
+    let s = &stage.by_state;
+    let xu = mul_thin(&hess.state_state, &s.u) + hess.state_control;
+    let xp = mul_vec(&hess.state_state, &s.p) + hess.state_time * stage.t_rate;
+    let up = tr_mul_vec(&s.u, &xp) + tr_mul_vec(&hess.state_control, &s.p) + hess.control_time * stage.t_rate;
     let raw = &mut out.raw;
-    raw.q[k] += tr_mul(&s.x, &mul(&hess.state_state, &s.x));
+    raw.hpp += s.p.dot(&(xp + hess.state_time * stage.t_rate)) + hess.time_time * stage.t_rate * stage.t_rate;
+    raw.qp[k] += tr_mul_vec(&s.x, &xp);
+    raw.q[k] += tr_mul(&s.x, &mul_thin(&hess.state_state, &s.x));
     let su = tr_mul(&s.x, &xu);
     let uu = tr_mul(&s.u, &xu) + tr_mul(&hess.state_control, &s.u) + hess.control_control;
     add_control_block(raw, layout.m, k, 0, &uu);
@@ -267,6 +290,4 @@ fn add_stage<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         raw.s[k * layout.m + j] += su.column(j);
         raw.rp[k * layout.m + j] += up[j];
     }
-    raw.qp[k] += qp;
-    raw.hpp += pp;
 }

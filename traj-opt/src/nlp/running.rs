@@ -126,11 +126,12 @@ fn add_running_hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 
 impl<const NX: usize, const NU: usize> PointTerms<NX, NU> {
     /// Derivatives of `h (omega . f + omega_l L)` at a point.
+    #[inline(always)]
     pub fn new<P: Problem<NX, NU>>(
         problem: &P,
         model: &PointModel<NX, NU>,
         at: &PointTime,
-        (x, u): (&SVector<f64, NX>, &SVector<f64, NU>),
+        (x, u, second): (&SVector<f64, NX>, &SVector<f64, NU>, bool),
         omega: &SVector<f64, NX>,
         omega_l: f64,
     ) -> Self {
@@ -143,7 +144,11 @@ impl<const NX: usize, const NU: usize> PointTerms<NX, NU> {
             Some(r) => (r.x * omega_l, r.u * omega_l, r.t * omega_l, r.value * omega_l),
             None => (SVector::zeros(), SVector::zeros(), 0.0, 0.0),
         };
-        let hessian = weighted_hessian(problem, at.time, x, u, &(omega * h), omega_l * h);
+        let hessian = if second {
+            weighted_hessian(problem, at.time, x, u, &(omega * h), omega_l * h)
+        } else {
+            Hessian::zeros()
+        };
         Self {
             x: (fx + lx) * h,
             u: (fu + lu) * h,

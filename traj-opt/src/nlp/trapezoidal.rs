@@ -29,12 +29,14 @@ pub(crate) fn evaluate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 }
 
 /// Derivatives of segment `k`.
+#[inline(always)]
 pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     program: &Program<NX, NU, P>,
     layout: &Layout,
     k: usize,
     w: &[f64],
     duals: &Duals<NX>,
+    second: bool,
     out: &mut Linearisation<NX, NU>,
 ) {
     let lambda = duals.defect[k];
@@ -55,7 +57,8 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     out.add_gradient(layout.state(k), lambda.as_slice());
     out.add_gradient(layout.state(k + 1), (-lambda).as_slice());
     for i in 0..2 {
-        let terms = PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i]), &(lambda * 0.5), 0.5);
+        let terms =
+            PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i], second), &(lambda * 0.5), 0.5);
         out.add_point_gradient(layout, (layout.state(k + i), layout.control(k, i)), &terms);
         let columns = mul(&resolve, &(model[i].f.control * half));
         for j in 0..NU {
@@ -66,6 +69,7 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 }
 
 /// Adds the second derivatives of a point at the left (`end` 0) or right (1) knot of segment `k`.
+#[inline(always)]
 pub(crate) fn add_end<const NX: usize, const NU: usize>(
     raw: &mut super::quadratic::Quadratic<NX>,
     m: usize,
