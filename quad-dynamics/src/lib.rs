@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod control;
 mod equipment;
 mod error;
 pub mod frames;
@@ -23,10 +24,12 @@ mod motion;
 mod presets;
 mod rk4;
 mod shaping;
+pub mod simulation;
 mod vehicle;
 
 pub use nalgebra;
 
+pub use control::{Gains, Target, TrackingController};
 pub use equipment::{Aerodynamics, Battery, Propulsion};
 pub use error::{Error, Field, Requirement};
 pub use frames::{Direction, GRAVITY, Heading};
@@ -34,6 +37,7 @@ pub use loiter::{CameraLimit, Limit, Loiter, LoiterSpec, LoiterYaw, loiter_speed
 pub use mixer::Mixer;
 pub use models::{Jacobian, JerkLimited, PointMass, RigidBody, RotorLag, ThrustRate};
 pub use motion::Motion;
-pub use rk4::{rk4, rk4_step};
+pub use rk4::{rk4, rk4_step, rk4_step_unit};
 pub use shaping::ShapingLimits;
+pub use simulation::{Flight, SimulationOptions, Tracking, simulate, simulate_batch};
 pub use vehicle::{Rotor, Spin, Vehicle, VehicleParameters};

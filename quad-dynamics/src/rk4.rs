@@ -39,3 +39,27 @@ where
     let step = duration / count;
     (0..n_steps).fold(*x, |x, _| rk4_step(&f, &x, step))
 }
+
+/// [`rk4_step`] for a state that holds a quaternion `(w, x, y, z)` from entry `quaternion` on, whose norm is 1 after the
+/// step: the result is projected back, which costs nothing of the order (the norm drifts by O(step^5) in a step).
+///
+/// # Panics
+/// If `quaternion + 4 > N`, as for a slice.
+#[must_use]
+pub fn rk4_step_unit<T, F, const N: usize>(
+    f: F,
+    x: &SVector<T, N>,
+    step: T,
+    quaternion: usize,
+) -> SVector<T, N>
+where
+    T: RealField + Copy,
+    F: Fn(&SVector<T, N>) -> SVector<T, N>,
+{
+    let mut next = rk4_step(f, x, step);
+    let norm = next.fixed_rows::<4>(quaternion).norm();
+    for i in quaternion..quaternion + 4 {
+        next[i] /= norm;
+    }
+    next
+}
