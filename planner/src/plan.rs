@@ -179,11 +179,11 @@ pub enum Outcome {
 /// Values found beside lower bounds that hold over every allocation, order, entry, direction and admissible motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
-    /// Time until the last vehicle is back (s).
+    /// Time until the last vehicle is back (s), waiting included.
     pub makespan: f64,
     /// No plan can have a smaller makespan (s).
     pub makespan_lower_bound: f64,
-    /// Sum of the vehicles' times (s).
+    /// Sum of the vehicles' times in the air (s).
     pub total: f64,
     /// No plan can have a smaller total (s).
     pub total_lower_bound: f64,
@@ -302,10 +302,19 @@ impl VehiclePlan {
     /// Time from take-off to the return (s); 0 for a spare vehicle.
     #[must_use]
     pub fn duration(&self) -> f64 {
-        match (self.legs.first(), self.legs.last()) {
-            (Some(first), Some(last)) => last.end_time() - first.start_time,
-            _ => 0.0,
-        }
+        self.end_time() - self.start_time()
+    }
+
+    /// When the vehicle takes off (s after the mission's start); later than 0 where it waits for others to pass.
+    #[must_use]
+    pub fn start_time(&self) -> f64 {
+        self.legs.first().map_or(0.0, |leg| leg.start_time)
+    }
+
+    /// When the vehicle is back (s after the mission's start); 0 for a spare vehicle.
+    #[must_use]
+    pub fn end_time(&self) -> f64 {
+        self.legs.last().map_or(0.0, Leg::end_time)
     }
 
     /// Time in transitions (s).

@@ -8,7 +8,7 @@ use crate::mission::{Mission, Model};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
 use crate::sample::Sampler;
-use crate::separation::{Airborne, closest_pair};
+use crate::separation::{Airborne, RESOLUTION, closest_pair, start_delays};
 use crate::transition::Pilot;
 use crate::{allocation, certificate};
 
@@ -48,14 +48,27 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         .zip(legs)
         .map(|((pad, route), legs)| VehiclePlan { pad, route, legs })
         .collect();
-    let certificate = certificate::certificate(mission, &orbits, &envelope, &vehicles)?;
     let circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
+    let certificate = certificate::certificate(mission, &orbits, &envelope, &vehicles)?;
     let mut plan = Plan { circles, vehicles, certificate, closest_approach: None, warnings: Vec::new() };
-    if let Some(sampler) = Sampler::new(&plan, mission) {
-        plan.closest_approach = closest_approach(&plan, &sampler);
-    }
+    delay_starts(&mut plan, mission);
+    plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);
+    plan.closest_approach = in_the_air(&plan, mission, |fleet| closest_pair(fleet)).flatten();
     plan.warnings = warnings(&plan, mission);
     Ok(plan)
+}
+
+/// Lets vehicles wait on their pads so that none comes too close to another in the air.
+fn delay_starts(plan: &mut Plan, mission: &Mission) {
+    let Some(delays) = in_the_air(plan, mission, |fleet| start_delays(fleet, mission.fleet.separation))
+    else {
+        return;
+    };
+    for (vehicle, delay) in plan.vehicles.iter_mut().zip(delays) {
+        for leg in &mut vehicle.legs {
+            leg.start_time += delay;
+        }
+    }
 }
 
 /// How fast the mission's vehicles can possibly speed up and brake.
@@ -84,25 +97,23 @@ fn fly_all(airspace: &Airspace, pads: &[[f64; 3]], routes: &[Vec<usize>]) -> Res
     flown.into_iter().collect()
 }
 
-fn closest_approach(plan: &Plan, sampler: &Sampler) -> Option<crate::plan::Approach> {
-    let positions: Vec<Box<dyn Fn(f64) -> [f64; 3] + '_>> = (0..plan.vehicles.len())
-        .map(|vehicle| {
-            Box::new(move |time| sampler.sample(vehicle, time).position) as Box<dyn Fn(f64) -> [f64; 3]>
+/// What `ask` answers about the vehicles of a plan in the air.
+fn in_the_air<R>(plan: &Plan, mission: &Mission, ask: impl Fn(&[Option<Airborne>]) -> R) -> Option<R> {
+    let sampler = Sampler::new(plan, mission)?;
+    let airborne = |vehicle: usize| {
+        let planned = &plan.vehicles[vehicle];
+        let (first, last) = (planned.legs.first()?, planned.legs.last()?);
+        let transitions = planned.legs.iter().map(|leg| leg.transition.max_speed);
+        let loiters = planned.route.iter().map(|&circle| plan.circles[circle].speed);
+        let sampler = &sampler;
+        Some(Airborne {
+            position: Box::new(move |time| sampler.sample(vehicle, time).position),
+            flight: [first.start_time, last.end_time()],
+            top_speed: transitions.chain(loiters).fold(0.0, f64::max),
         })
-        .collect();
-    let fleet: Vec<Option<Airborne>> = plan
-        .vehicles
-        .iter()
-        .zip(&positions)
-        .map(|(vehicle, position)| {
-            let (first, last) = (vehicle.legs.first()?, vehicle.legs.last()?);
-            let transitions = vehicle.legs.iter().map(|leg| leg.transition.max_speed);
-            let loiters = vehicle.route.iter().map(|&circle| plan.circles[circle].speed);
-            let top_speed = transitions.chain(loiters).fold(0.0, f64::max);
-            Some(Airborne { position, flight: [first.start_time, last.end_time()], top_speed })
-        })
-        .collect();
-    closest_pair(&fleet)
+    };
+    let fleet: Vec<Option<Airborne>> = (0..plan.vehicles.len()).map(airborne).collect();
+    Some(ask(&fleet))
 }
 
 fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
@@ -112,7 +123,8 @@ fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
         warnings.push(Warning::Spare { vehicles: spare });
     }
     let required = mission.fleet.separation;
-    if let Some(approach) = plan.closest_approach.filter(|approach| approach.distance < required) {
+    if let Some(approach) = plan.closest_approach.filter(|approach| approach.distance < required - RESOLUTION)
+    {
         warnings.push(Warning::Separation { approach, required });
     }
     for (vehicle, planned) in plan.vehicles.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How close vehicles come to each other, proved on the continuous trajectories.
+//! How close vehicles come to each other, proved on the continuous trajectories, and start delays that keep them apart.
 
 use crate::plan::Approach;
 
@@ -8,7 +8,7 @@ pub(crate) const RESOLUTION: f64 = 1e-3;
 /// A vehicle in the air: where it is, when it flies, and how fast at most.
 pub(crate) struct Airborne<'a> {
     /// Position (m) at a time (s after the mission's start).
-    pub position: &'a dyn Fn(f64) -> [f64; 3],
+    pub position: Box<dyn Fn(f64) -> [f64; 3] + 'a>,
     /// First and last moment in the air (s).
     pub flight: [f64; 2],
     /// Speed that is never exceeded (m/s).
@@ -65,6 +65,68 @@ pub(crate) fn closest_pair(fleet: &[Option<Airborne>]) -> Option<Approach> {
     closest
 }
 
+/// Start delays (s) with which every two vehicles stay `separation` (m) apart while both fly.
+///
+/// The longest flight starts at once; each shorter one waits the fewest [`DELAY_STEP`]s that keep it apart from all flights
+/// placed before it. There is always an end to the waiting: a vehicle on its pad counts for nothing.
+pub(crate) fn start_delays(fleet: &[Option<Airborne>], separation: f64) -> Vec<f64> {
+    let mut delays = vec![0.0; fleet.len()];
+    let mut order: Vec<usize> = (0..fleet.len()).filter(|&i| fleet[i].is_some()).collect();
+    let length = |i: usize| fleet[i].as_ref().map_or(0.0, |airborne| airborne.flight[1] - airborne.flight[0]);
+    order.sort_by(|&a, &b| length(b).total_cmp(&length(a)));
+    for (place, &vehicle) in order.iter().enumerate() {
+        let Some(flight) = &fleet[vehicle] else { continue };
+        let apart = |delay: f64| {
+            order[..place].iter().all(|&other| {
+                fleet[other]
+                    .as_ref()
+                    .is_none_or(|placed| keeps_apart(placed, delays[other], flight, delay, separation))
+            })
+        };
+        let waits = (0u32..).map(|step| f64::from(step) * DELAY_STEP);
+        delays[vehicle] = waits.into_iter().find(|&delay| apart(delay)).unwrap_or(0.0);
+    }
+    delays
+}
+
+/// Granularity of start delays (s).
+const DELAY_STEP: f64 = 0.25;
+
+/// Whether two delayed flights stay `separation` apart, to within [`RESOLUTION`], by the same bound as
+/// [`closest_approach`].
+fn keeps_apart(
+    first: &Airborne,
+    first_delay: f64,
+    second: &Airborne,
+    second_delay: f64,
+    separation: f64,
+) -> bool {
+    let start = (first.flight[0] + first_delay).max(second.flight[0] + second_delay);
+    let end = (first.flight[1] + first_delay).min(second.flight[1] + second_delay);
+    if start > end {
+        return true;
+    }
+    let lipschitz = first.top_speed + second.top_speed;
+    let distance = |time: f64| {
+        let (a, b) = ((first.position)(time - first_delay), (second.position)(time - second_delay));
+        (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+    };
+    let mut open = vec![([start, end], [distance(start), distance(end)])];
+    while let Some(([a, b], [at_a, at_b])) = open.pop() {
+        if at_a.min(at_b) < separation {
+            return false;
+        }
+        if 0.5 * (at_a + at_b - lipschitz * (b - a)) >= separation - RESOLUTION {
+            continue;
+        }
+        let middle = 0.5 * (a + b);
+        let at_middle = distance(middle);
+        open.push(([middle, b], [at_middle, at_b]));
+        open.push(([a, middle], [at_a, at_middle]));
+    }
+    true
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,17 +137,38 @@ mod tests {
         let meeting = 12.345_678_9;
         let first = |t: f64| [100.0 * (t - meeting), 0.0, 1.0];
         let second = |t: f64| [0.0, 100.0 * (t - meeting), 1.5];
-        let airborne = |position| Airborne { position, flight: [0.0, 100.0], top_speed: 100.0 };
-        let (time, distance) = closest_approach(&airborne(&first), &airborne(&second)).unwrap();
+        let airborne = |position: Box<dyn Fn(f64) -> [f64; 3]>| Airborne {
+            position,
+            flight: [0.0, 100.0],
+            top_speed: 100.0,
+        };
+        let (first, second) = (airborne(Box::new(first)), airborne(Box::new(second)));
+        let (time, distance) = closest_approach(&first, &second).unwrap();
         assert!((time - meeting).abs() < 1e-4, "{time}");
         assert!((0.5 - distance).abs() <= RESOLUTION, "{distance}");
     }
 
     #[test]
+    fn the_shorter_flight_waits_until_the_crossing_is_clear() {
+        let first = |t: f64| [10.0 * (t - 5.0), 0.0, 1.0];
+        let second = |t: f64| [0.0, 10.0 * (t - 4.5), 1.0];
+        let fleet = [
+            Some(Airborne { position: Box::new(second), flight: [0.0, 9.0], top_speed: 10.0 }),
+            Some(Airborne { position: Box::new(first), flight: [0.0, 10.0], top_speed: 10.0 }),
+        ];
+        let delays = start_delays(&fleet, 3.0);
+        // Without a delay the crossings are half a second apart, 3.5 m; closing on each other halves the squares: 3.53 m.
+        assert_eq!(delays, [0.0, 0.0]);
+        let delays = start_delays(&fleet, 5.0);
+        assert_eq!(delays[1], 0.0);
+        // With the crossings dt apart the least distance is 10 dt / sqrt 2: at least 5 m from 0.707 s on.
+        assert_eq!(delays[0], 1.25);
+    }
+
+    #[test]
     fn vehicles_that_never_fly_together_have_no_approach() {
-        let still = |_: f64| [0.0; 3];
-        let first = Airborne { position: &still, flight: [0.0, 1.0], top_speed: 0.0 };
-        let second = Airborne { position: &still, flight: [2.0, 3.0], top_speed: 0.0 };
+        let still = |flight| Airborne { position: Box::new(|_| [0.0; 3]), flight, top_speed: 0.0 };
+        let (first, second) = (still([0.0, 1.0]), still([2.0, 3.0]));
         assert_eq!(closest_approach(&first, &second), None);
     }
 }
