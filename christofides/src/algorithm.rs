@@ -3,8 +3,8 @@
 use crate::error::Error;
 use crate::euler::euler_circuit;
 use crate::exact::{exact_path, exact_tour};
-use crate::improve::{chained_improve, chained_improve_path};
-use crate::lower_bound::held_karp;
+use crate::improve::{Pinned, chained_improve, chained_improve_path};
+use crate::lower_bound::bound;
 use crate::matching::{Matching, Solver};
 use crate::metric::{Geometry, Metric};
 use crate::points::Points;
@@ -12,6 +12,9 @@ use crate::shortcut::shortcut;
 use crate::spanning_tree::spanning_tree;
 use crate::tour::{Ends, Path, Tour};
 use crate::validate::{validate_finite, validate_promised};
+
+/// Up to this number of vertices the ascent of the lower bound is not cut short: it takes a fraction of a second.
+const PATIENT_UP_TO: usize = 1000;
 
 /// How much work [`solve`] and [`solve_path`] put into a tour.
 #[derive(Debug, Clone, PartialEq)]
@@ -145,8 +148,8 @@ pub fn solve(
     if options.ascent_iterations == 0 {
         return Ok(tour);
     }
-    let bound = held_karp(metric, options.ascent_iterations)?;
-    Ok(tour.with_lower_bound(bound.value()))
+    let bound = bound(metric, options.ascent_iterations, &mut || n > PATIENT_UP_TO && should_stop()).value;
+    Ok(tour.with_lower_bound(bound.max(0.0)))
 }
 
 /// A short path with the given ends: exact if small, else improved within the budget of `options`.
@@ -166,5 +169,12 @@ pub fn solve_path(
         return exact_path(metric, ends);
     }
     let path = Path::measured(metric, ends.any_order(n));
-    chained_improve_path(metric, path, ends, options.kicks, options.seed, should_stop)
+    let path = chained_improve_path(metric, path, ends, options.kicks, options.seed, should_stop)?;
+    if options.ascent_iterations == 0 {
+        return Ok(path);
+    }
+    let pinned = Pinned::new(metric, ends, path.cost());
+    let mut stop = || n > PATIENT_UP_TO && should_stop();
+    let bound = bound(&pinned, options.ascent_iterations, &mut stop).value - pinned.offset();
+    Ok(path.with_lower_bound(bound.max(0.0)))
 }

@@ -10,6 +10,8 @@ mod delaunay;
 mod error;
 mod euler;
 mod exact;
+#[cfg(feature = "petgraph")]
+mod graph;
 mod improve;
 mod kd_tree;
 mod lower_bound;

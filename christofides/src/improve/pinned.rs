@@ -23,6 +23,15 @@ impl<'a, M: Metric> Pinned<'a, M> {
         self.metric.len()
     }
 
+    /// What the fixed ends add to the length of every path when it is closed.
+    pub fn offset(&self) -> f64 {
+        match self.ends {
+            Ends::Free => 0.0,
+            Ends::Start(_) => self.bond,
+            Ends::Both(..) => 2.0 * self.bond,
+        }
+    }
+
     /// The tour of a path.
     pub fn close(&self, mut order: Vec<usize>) -> Vec<usize> {
         order.push(self.joint());

@@ -24,12 +24,14 @@ pub(crate) fn ascend(
 ) -> LowerBound {
     let n = metric.len();
     let mut edges = near_edges(metric);
-    edges.extend(spanning_tree(metric).iter().map(|&[u, v]| (u as u32, v as u32)));
+    let tree = spanning_tree(metric);
+    edges.extend(tree.iter().map(|&[u, v]| (u as u32, v as u32)));
+    let span: f64 = tree.iter().map(|&[u, v]| metric.distance(u, v).max(0.0)).sum();
     let mut best = LowerBound { value: 0.0, multipliers: vec![0.0; n] };
     let first = Proof::new(metric, &best.multipliers);
-    best.value = first.value.max(0.0);
+    best.value = first.value;
     edges.extend(&first.edges);
-    let mut ascent = Ascent::new(n, first.value / (2.0 * n as f64));
+    let mut ascent = Ascent::new(n, span / (2.0 * n as f64));
     for round in 0..ROUNDS {
         normalise(&mut edges);
         let graph = CandidateGraph::new(n, &edges, |u, v| metric.distance(u as usize, v as usize));

@@ -59,7 +59,9 @@ impl LowerBound {
 /// ```
 pub fn held_karp(metric: &impl Metric, iterations: usize) -> Result<LowerBound, Error> {
     validate_finite(metric)?;
-    Ok(bound(metric, iterations, &mut || false))
+    let mut bound = bound(metric, iterations, &mut || false);
+    bound.value = bound.value.max(0.0);
+    Ok(bound)
 }
 
 pub(crate) fn bound(

@@ -194,11 +194,6 @@ impl Forest {
         record.dual + self.label(node) as i64 * (self.now - record.since)
     }
 
-    /// The dual of a node when no tree is alive.
-    pub fn dual_at_rest(&self, node: u32) -> i64 {
-        self.nodes[node as usize].dual
-    }
-
     /// Gives a top-level node another label, its dual and radii continuing from where they are.
     pub fn relabel(&mut self, node: u32, label: Label) {
         let dual = self.dual(node);

@@ -1,166 +1,281 @@
 //! Edges of the complete graph that the duals do not yet satisfy.
 //!
-//! The slack of a pair is its weight less the two radii up to the smallest blossom around both. So every blossom (and
-//! the set of all vertices) is searched on its own for pairs from different children, with the radii of its children.
+//! The slack of a pair is its weight less the two radii, counted up to the smallest blossom around both. So every blossom
+//! (and the set of all vertices) is searched for pairs from different children. One k-d tree serves all of them: vertices
+//! are numbered so that every blossom is a range, and boxes know the greatest radius and the range of their vertices.
 
 use super::forest::{Forest, NONE};
-use super::quantise::Scale;
+use super::quantise::{Scale, UNIT};
 use crate::kd_tree::{KdTree, squared_distance};
 use crate::metric::{Geometry, Metric};
+use std::ops::Range;
 
 /// Most violated edges that one vertex adds in a round.
 const PER_VERTEX: usize = 6;
 
-/// Below this number of members all pairs are looked at.
+/// Up to this number of vertices of a blossom all pairs are looked at.
 const ALL_PAIRS_UP_TO: usize = 24;
-
-/// A vertex seen from a blossom: the child it is in, and its radius up to that child.
-#[derive(Debug, Clone, Copy)]
-struct Member {
-    vertex: u32,
-    child: u32,
-    radius: i64,
-}
 
 /// A violated edge and its weight.
 pub(crate) type Violation = (u32, u32, i64);
 
-/// All sets whose pairs are to be searched, one after the other.
-pub(crate) fn violated(forest: &Forest, metric: &impl Metric, scale: Scale) -> Vec<Violation> {
-    let n = forest.n_vertices() as u32;
-    let mut found = Vec::new();
-    let mut search = Search { metric, scale, row: Vec::new(), found: &mut found };
-    let everything: Vec<Member> = (0..n)
-        .map(|vertex| Member { vertex, child: forest.top(vertex), radius: forest.radius(vertex) })
-        .collect();
-    search.set(&everything);
-    let mut inner = vec![0; n as usize];
-    for member in &everything {
-        inner[member.vertex as usize] = member.radius;
-    }
-    let mut stack: Vec<u32> = (n..forest.nodes.len() as u32)
-        .filter(|&node| forest.nodes[node as usize].size > 0 && forest.nodes[node as usize].parent == NONE)
-        .collect();
-    let mut members = Vec::new();
-    while let Some(blossom) = stack.pop() {
-        members.clear();
-        let dual = forest.dual_at_rest(blossom);
-        for &(child, _) in &forest.nodes[blossom as usize].cycle {
-            for vertex in forest.vertices(child) {
-                inner[vertex as usize] -= dual;
-                members.push(Member { vertex, child, radius: inner[vertex as usize] });
-            }
-            if forest.is_blossom(child) {
-                stack.push(child);
-            }
-        }
-        search.set(&members);
-    }
-    found
+/// The k-d tree of the points of a metric, if it has any.
+#[derive(Debug)]
+pub(crate) enum Index {
+    Planar(KdTree<2>),
+    Spatial(KdTree<3>),
+    Abstract,
 }
 
-struct Search<'a, M> {
+impl Index {
+    pub fn new(metric: &impl Metric) -> Self {
+        match metric.geometry() {
+            _ if metric.len() <= ALL_PAIRS_UP_TO => Index::Abstract,
+            Geometry::Planar(points) => Index::Planar(KdTree::new(points)),
+            Geometry::Spatial(points) => Index::Spatial(KdTree::new(points)),
+            Geometry::Abstract => Index::Abstract,
+        }
+    }
+}
+
+/// All violated edges, at most [`PER_VERTEX`] of a vertex in a blossom.
+pub(crate) fn violated(forest: &Forest, metric: &impl Metric, scale: Scale, index: &Index) -> Vec<Violation> {
+    let mut pricing = Pricing::new(forest, metric, scale);
+    match index {
+        Index::Planar(tree) => pricing.search(tree),
+        Index::Spatial(tree) => pricing.search(tree),
+        Index::Abstract => pricing.search_all_pairs(),
+    }
+    pricing.found
+}
+
+struct Pricing<'a, M> {
+    forest: &'a Forest,
     metric: &'a M,
     scale: Scale,
+    /// Vertices in an order in which every blossom is a range.
+    sequence: Vec<u32>,
+    /// Where each vertex is in it.
+    place: Vec<u32>,
+    /// Full radii.
+    radius: Vec<i64>,
     row: Vec<(i64, Violation)>,
-    found: &'a mut Vec<Violation>,
+    found: Vec<Violation>,
 }
 
-impl<M: Metric> Search<'_, M> {
-    fn set(&mut self, members: &[Member]) {
-        match self.metric.geometry() {
-            _ if members.len() <= ALL_PAIRS_UP_TO => self.all_pairs(members),
-            Geometry::Planar(points) => self.by_tree(members, points),
-            Geometry::Spatial(points) => self.by_tree(members, points),
-            Geometry::Abstract => self.all_pairs(members),
+impl<'a, M: Metric> Pricing<'a, M> {
+    fn new(forest: &'a Forest, metric: &'a M, scale: Scale) -> Self {
+        let n = forest.n_vertices();
+        let mut sequence = Vec::with_capacity(n);
+        for vertex in 0..n as u32 {
+            let top = forest.top(vertex);
+            if forest.nodes[top as usize].first == vertex {
+                sequence.extend(forest.vertices(top));
+            }
         }
+        let mut place = vec![0; n];
+        for (k, &vertex) in sequence.iter().enumerate() {
+            place[vertex as usize] = k as u32;
+        }
+        let radius = (0..n as u32).map(|vertex| forest.radius(vertex)).collect();
+        Pricing { forest, metric, scale, sequence, place, radius, row: Vec::new(), found: Vec::new() }
     }
 
-    fn all_pairs(&mut self, members: &[Member]) {
-        for (k, member) in members.iter().enumerate() {
-            for other in members[k + 1..].iter().filter(|other| other.child != member.child) {
-                self.check(member, other);
+    fn range(&self, node: u32) -> Range<u32> {
+        let first = self.place[self.forest.nodes[node as usize].first as usize];
+        first..first + self.forest.nodes[node as usize].size
+    }
+
+    /// All blossoms, outer ones first, each with the sum of the duals of itself and those around it.
+    fn blossoms(&self) -> Vec<(u32, i64)> {
+        let nodes = &self.forest.nodes;
+        let n = self.forest.n_vertices();
+        let is_top = |node: &usize| nodes[*node].size > 0 && nodes[*node].parent == NONE;
+        let mut list: Vec<(u32, i64)> =
+            (n..nodes.len()).filter(is_top).map(|node| (node as u32, nodes[node].dual)).collect();
+        let mut next = 0;
+        while next < list.len() {
+            let (blossom, around) = list[next];
+            for &(child, _) in nodes[blossom as usize].cycle.iter().filter(|c| self.forest.is_blossom(c.0)) {
+                list.push((child, around + nodes[child as usize].dual));
             }
-            self.keep_worst();
+            next += 1;
         }
+        list
     }
 
     #[inline]
-    fn check(&mut self, member: &Member, other: &Member) {
-        let weight = self.scale.weight(self.metric.distance(member.vertex as usize, other.vertex as usize));
-        let slack = weight - member.radius - other.radius;
+    fn check(&mut self, u: u32, v: u32, around: i64) {
+        let weight = self.scale.weight(self.metric.distance(u as usize, v as usize));
+        let slack = weight - self.radius[u as usize] - self.radius[v as usize] + 2 * around;
         if slack < 0 {
-            self.row.push((slack, (member.vertex, other.vertex, weight)));
+            self.row.push((slack, (u, v, weight)));
         }
     }
 
     fn keep_worst(&mut self) {
         if self.row.len() > PER_VERTEX {
-            self.row.sort_unstable();
+            self.row.select_nth_unstable(PER_VERTEX);
+            self.row.truncate(PER_VERTEX);
         }
-        self.found.extend(self.row.drain(..).take(PER_VERTEX).map(|(_, violation)| violation));
+        self.found.extend(self.row.drain(..).map(|(_, violation)| violation));
     }
 
-    /// Skips boxes that are too far for every radius in them, or that lie in the same child as the vertex.
-    fn by_tree<const D: usize>(&mut self, members: &[Member], points: &[[f64; D]]) {
-        let positions: Vec<[f64; D]> = members.iter().map(|member| points[member.vertex as usize]).collect();
-        let tree = KdTree::new(&positions);
-        let sorted: Vec<Member> = tree.order.iter().map(|&k| members[k as usize]).collect();
-        // One unit more than the dual: rounding of a weight cannot hide a violation.
-        let radii: Vec<f64> = sorted.iter().map(|member| self.scale.real(member.radius + 4)).collect();
-        let (greatest, child) = summarise(&tree, &sorted, &radii);
-        let mut stack = Vec::new();
-        for (position, member) in sorted.iter().enumerate() {
-            stack.push(0_u32);
-            while let Some(index) = stack.pop() {
-                let node = &tree.nodes[index as usize];
-                let reach = radii[position] + greatest[index as usize];
-                let skip = node.end as usize <= position + 1
-                    || child[index as usize] == member.child
-                    || reach < 0.0
-                    || node.squared_distance(&tree.points[position]) > reach * reach;
-                if skip {
-                    continue;
-                }
-                if node.left != 0 {
-                    stack.extend([node.left, node.left + 1]);
-                    continue;
-                }
-                for other in
-                    node.range().filter(|&other| other > position && sorted[other].child != member.child)
-                {
-                    let reach = radii[position] + radii[other];
-                    if reach >= 0.0
-                        && squared_distance(&tree.points[position], &tree.points[other]) <= reach * reach
-                    {
-                        self.check(member, &sorted[other]);
-                    }
+    fn search_all_pairs(&mut self) {
+        let n = self.forest.n_vertices() as u32;
+        for u in 0..n {
+            let top = self.forest.top(u);
+            for v in u + 1..n {
+                if self.forest.top(v) != top {
+                    self.check(u, v, 0);
                 }
             }
             self.keep_worst();
         }
-    }
-}
-
-/// For every box the greatest radius, and the child if it is the same for all its members.
-fn summarise<const D: usize>(tree: &KdTree<D>, sorted: &[Member], radii: &[f64]) -> (Vec<f64>, Vec<u32>) {
-    let mut greatest = vec![f64::NEG_INFINITY; tree.nodes.len()];
-    let mut child = vec![NONE; tree.nodes.len()];
-    for index in (0..tree.nodes.len()).rev() {
-        let node = &tree.nodes[index];
-        if node.left != 0 {
-            let left = node.left as usize;
-            greatest[index] = greatest[left].max(greatest[left + 1]);
-            child[index] = if child[left] == child[left + 1] { child[left] } else { NONE };
-            continue;
+        for (blossom, around) in self.blossoms() {
+            self.all_pairs_in(blossom, around);
         }
-        child[index] = sorted[node.begin as usize].child;
-        for position in node.range() {
-            greatest[index] = greatest[index].max(radii[position]);
-            if sorted[position].child != child[index] {
-                child[index] = NONE;
+    }
+
+    /// Every pair of vertices from different children of a blossom.
+    fn all_pairs_in(&mut self, blossom: u32, around: i64) {
+        let end = self.range(blossom).end;
+        let forest = self.forest;
+        for &(child, _) in &forest.nodes[blossom as usize].cycle {
+            let range = self.range(child);
+            for k in range.clone() {
+                for other in range.end..end {
+                    self.check(self.sequence[k as usize], self.sequence[other as usize], around);
+                }
+                self.keep_worst();
             }
         }
     }
-    (greatest, child)
+
+    fn search<const D: usize>(&mut self, tree: &KdTree<D>) {
+        let boxes = self.boxes(tree);
+        let everything = 0..self.sequence.len() as u32;
+        for position in 0..tree.order.len() {
+            let own = self.range(self.forest.top(tree.order[position]));
+            let query =
+                Query { position, own, within: everything.clone(), around: 0, from: position as u32 + 1 };
+            self.query(tree, &boxes, &query);
+        }
+        let mut position_of = vec![0; tree.order.len()];
+        for (position, &vertex) in tree.order.iter().enumerate() {
+            position_of[vertex as usize] = position;
+        }
+        for (blossom, around) in self.blossoms() {
+            let within = self.range(blossom);
+            if within.len() <= ALL_PAIRS_UP_TO {
+                self.all_pairs_in(blossom, around);
+                continue;
+            }
+            // Of every pair at least one vertex is not in the largest child.
+            let forest = self.forest;
+            let cycle = &forest.nodes[blossom as usize].cycle;
+            let largest = cycle.iter().map(|c| c.0).max_by_key(|&child| forest.nodes[child as usize].size);
+            for child in cycle.iter().map(|c| c.0).filter(|&child| Some(child) != largest) {
+                let own = self.range(child);
+                for k in own.clone() {
+                    let position = position_of[self.sequence[k as usize] as usize];
+                    let query = Query { position, own: own.clone(), within: within.clone(), around, from: 0 };
+                    self.query(tree, &boxes, &query);
+                }
+            }
+        }
+    }
+
+    /// For every box of the tree the greatest radius and the range of its vertices.
+    fn boxes<const D: usize>(&self, tree: &KdTree<D>) -> Vec<Summary> {
+        let empty = Summary { radius: f64::NEG_INFINITY, low: NONE, high: 0 };
+        let mut boxes = vec![empty; tree.nodes.len()];
+        for k in (0..tree.nodes.len()).rev() {
+            let node = &tree.nodes[k];
+            let mut summary = empty;
+            if node.left != 0 {
+                summary = boxes[node.left as usize].join(boxes[node.left as usize + 1]);
+            } else {
+                for &vertex in &tree.order[node.range()] {
+                    let place = self.place[vertex as usize];
+                    let radius = self.scale.real(self.radius[vertex as usize]);
+                    summary = summary.join(Summary { radius, low: place, high: place });
+                }
+            }
+            boxes[k] = summary;
+        }
+        boxes
+    }
+
+    /// Checks the vertices of `query.within` that are not in `query.own` and near enough to be violated.
+    fn query<const D: usize>(&mut self, tree: &KdTree<D>, boxes: &[Summary], query: &Query) {
+        let u = tree.order[query.position];
+        let point = &tree.points[query.position];
+        // One unit more than the radii: rounding of a weight cannot hide a violation.
+        let radius = self.scale.real(self.radius[u as usize] - 2 * query.around + UNIT);
+        let Query { own, within, .. } = query;
+        let mut stack = [0_u32; 64];
+        let mut len = 1;
+        while len > 0 {
+            len -= 1;
+            let index = stack[len] as usize;
+            let (node, summary) = (&tree.nodes[index], boxes[index]);
+            let reach = radius + summary.radius;
+            let is_outside = summary.high < within.start || summary.low >= within.end;
+            let is_own = summary.low >= own.start && summary.high < own.end;
+            if node.end <= query.from || is_outside || is_own || reach < 0.0 {
+                continue;
+            }
+            if node.squared_distance(point) > reach * reach {
+                continue;
+            }
+            if node.left != 0 {
+                stack[len] = node.left;
+                stack[len + 1] = node.left + 1;
+                len += 2;
+                continue;
+            }
+            for position in node.range() {
+                let v = tree.order[position];
+                let place = self.place[v as usize];
+                let is_far = squared_distance(point, &tree.points[position]) > reach * reach;
+                if !is_far
+                    && position >= query.from as usize
+                    && within.contains(&place)
+                    && !own.contains(&place)
+                {
+                    self.check(u, v, query.around);
+                }
+            }
+        }
+        self.keep_worst();
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Summary {
+    radius: f64,
+    low: u32,
+    high: u32,
+}
+
+impl Summary {
+    fn join(self, other: Summary) -> Summary {
+        let (low, high) = (self.low.min(other.low), self.high.max(other.high));
+        Summary { radius: self.radius.max(other.radius), low, high }
+    }
+}
+
+/// A vertex whose partners are sought.
+struct Query {
+    /// Position of the vertex in the tree.
+    position: usize,
+    /// The range of the child that it is in.
+    own: Range<u32>,
+    /// The range of the blossom.
+    within: Range<u32>,
+    /// Sum of the duals of the blossom and those around it.
+    around: i64,
+    /// Only positions from here on are looked at.
+    from: u32,
 }

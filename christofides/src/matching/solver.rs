@@ -2,7 +2,7 @@
 
 use super::blossoms::Blossom;
 use super::forest::Forest;
-use super::pricing::violated;
+use super::pricing::{Index, violated};
 use super::quantise::Scale;
 use super::search::Exposed;
 use crate::candidates::matching_candidates;
@@ -108,9 +108,10 @@ impl Solver {
         self.edges.extend(candidates.iter().map(|edge| (edge.0, edge.1, scale.weight(length(edge)))));
         self.forest.graph.rebuild(n, &self.edges);
         self.forest.start_greedily();
+        let index = Index::new(metric);
         loop {
             self.forest.run().map_err(|Exposed(exposed)| Error::NoPerfectMatching { exposed })?;
-            let violated = violated(&self.forest, metric, scale);
+            let violated = violated(&self.forest, metric, scale, &index);
             if violated.is_empty() {
                 break;
             }
