@@ -33,6 +33,8 @@ pub enum Field {
     CameraLimit,
     Speed,
     ShapingLimits,
+    AngleOfView,
+    Period,
 }
 
 impl fmt::Display for Field {
@@ -63,6 +65,8 @@ impl fmt::Display for Field {
             Field::AccelerationLimit => "acceleration_limit",
             Field::CameraLimit => "camera_limit",
             Field::Speed => "speed",
+            Field::AngleOfView => "angle_of_view",
+            Field::Period => "period",
             Field::ShapingLimits => "shaping_limits",
         })
     }
@@ -232,5 +236,18 @@ pub enum Error {
         allowed: f64,
         /// The limit that sets it.
         limit: crate::Limit,
+    },
+    /// Hovering in this wind already needs the whole thrust budget.
+    #[error(
+        "hovering in a wind of {wind:.2} m/s needs {thrust:.3} N, and the thrust budget is {budget:.3} N; raise \
+         `thrust_budget` or wait for less wind"
+    )]
+    WindTooStrong {
+        /// Wind, m/s.
+        wind: f64,
+        /// Thrust that hovering needs, N.
+        thrust: f64,
+        /// Thrust that the budget allows, N.
+        budget: f64,
     },
 }

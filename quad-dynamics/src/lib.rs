@@ -13,7 +13,9 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod camera;
 mod control;
+mod energy;
 mod equipment;
 mod error;
 pub mod frames;
@@ -29,11 +31,13 @@ mod vehicle;
 
 pub use nalgebra;
 
+pub use camera::{Camera, View};
 pub use control::{Gains, Target, TrackingController};
+pub use energy::AIR_DENSITY;
 pub use equipment::{Aerodynamics, Battery, Propulsion};
 pub use error::{Error, Field, Requirement};
 pub use frames::{Direction, GRAVITY, Heading};
-pub use loiter::{CameraLimit, Limit, Loiter, LoiterSpec, LoiterYaw, loiter_speed};
+pub use loiter::{CameraLimit, Limit, Loiter, LoiterSpec, LoiterYaw, WindyLoiter, loiter_speed};
 pub use mixer::Mixer;
 pub use models::{Jacobian, JerkLimited, PointMass, RigidBody, RotorLag, ThrustRate};
 pub use motion::Motion;

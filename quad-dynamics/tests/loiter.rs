@@ -258,3 +258,71 @@ fn states_match_the_reference_transitions() {
     }
     assert_eq!(n_states, 100);
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// In wind the states obey the equation of motion, stay in the budget, and touch it where thrust binds.
+    #[test]
+    fn windy_circles_stay_in_budget(
+        vehicle in any_vehicle(), radius in 2.0..40.0_f64, share in 0.3..0.9_f64, wind in [-4.0..4.0_f64, -4.0..4.0, -1.0..1.0],
+        yaw in any_yaw(), direction in any_direction(),
+    ) {
+        let least = vehicle.weight() / vehicle.max_thrust();
+        let budget = least + share * (1.0 - least);
+        let spec = LoiterSpec::new(radius).with_thrust_budget(budget).with_yaw(yaw);
+        let wind = Vector3::from(wind);
+        let Ok(loiter) = WindyLoiter::new(&vehicle, &spec, wind, direction) else {
+            let hover = (Vector3::new(0.0, 0.0, vehicle.weight()) + vehicle.drag(&wind)).norm();
+            prop_assert!(hover >= budget * vehicle.max_thrust());
+            return Ok(());
+        };
+        let model = RigidBody::new(&vehicle).with_wind(wind);
+        let mut greatest = 0.0_f64;
+        for i in 0..720 {
+            let motion = loiter.state(i as f64 * TAU / 720.0);
+            greatest = greatest.max(motion.collective_thrust);
+            let rate = model.derivative(&motion.rigid_body_state(), &motion.rotor_thrusts);
+            prop_assert!((rate.fixed_rows::<3>(3) - motion.acceleration).amax() < 1e-9);
+        }
+        let share = greatest / (budget * vehicle.max_thrust());
+        prop_assert!(share < 1.0 + 1e-3, "{share}");
+        prop_assert!(loiter.limit != Limit::Thrust || share > 1.0 - 1e-6, "{share}");
+        // The body rates are those of the attitude that changes along the circle.
+        let step = 1e-5;
+        let (before, now, after) = (loiter.state(1.0 - step), loiter.state(1.0), loiter.state(1.0 + step));
+        let turned = (before.attitude.inverse() * after.attitude).scaled_axis();
+        let rates = turned * (direction.sign() * loiter.angular_speed() / (2.0 * step));
+        prop_assert!((rates - now.body_rates).norm() < 1e-5 * (1.0 + rates.norm()), "{rates} {}", now.body_rates);
+    }
+
+    /// Radius for a speed and for a period, and back.
+    #[test]
+    fn radii_can_be_chosen(vehicle in any_vehicle(), radius in 1.0..60.0_f64, share in 0.1..0.9_f64) {
+        let least = vehicle.weight() / vehicle.max_thrust();
+        let spec = LoiterSpec::new(radius).with_thrust_budget(least + share * (1.0 - least));
+        let loiter = Loiter::new(&vehicle, &spec).unwrap();
+        let again = Loiter::with_speed(&vehicle, &spec, loiter.speed * 0.999).unwrap();
+        prop_assert!(again.radius <= radius && (again.speed / loiter.speed - 0.999).abs() < 1e-12);
+        let again = Loiter::with_period(&vehicle, &spec, loiter.period()).unwrap();
+        prop_assert!((again.period() / loiter.period() - 1.0).abs() < 1e-9 && again.radius > radius * (1.0 - 1e-6));
+        let quickest = Loiter::quickest(&vehicle, &spec, 0.5, 60.0).unwrap();
+        prop_assert!(quickest.period() <= loiter.period() * (1.0 + 1e-9));
+    }
+}
+
+/// Without wind the windy circle is the circle.
+#[test]
+fn no_wind_is_no_wind() {
+    let spec = LoiterSpec::new(3.0);
+    let still = Loiter::new(&survey(), &spec).unwrap();
+    let windy = WindyLoiter::new(&survey(), &spec, Vector3::zeros(), Direction::Clockwise).unwrap();
+    assert!((windy.speed / still.speed - 1.0).abs() < 1e-12 && windy.limit == Limit::Thrust);
+    let (a, b) = (windy.state(0.3), still.state(0.3, Direction::Clockwise));
+    assert!((a.rigid_body_state() - b.rigid_body_state()).amax() < 1e-12);
+    let storm = WindyLoiter::new(&survey(), &spec, Vector3::new(20.0, 0.0, 0.0), Direction::Clockwise);
+    assert!(matches!(storm, Err(Error::WindTooStrong { .. })));
+    assert!(
+        WindyLoiter::new(&survey(), &spec, Vector3::new(f64::NAN, 0.0, 0.0), Direction::Clockwise).is_err()
+    );
+}

@@ -2,11 +2,14 @@
 
 mod circle;
 mod limits;
+mod radius;
 mod spec;
+mod wind;
 
 pub use crate::frames::Direction;
 pub use limits::{Limit, loiter_speed};
 pub use spec::{CameraLimit, LoiterSpec, LoiterYaw};
+pub use wind::WindyLoiter;
 
 use crate::error::{Error, Field, Requirement};
 use crate::motion::Motion;
@@ -36,7 +39,7 @@ pub struct Loiter {
     pub pitch: f64,
     /// Where body x points.
     pub yaw: LoiterYaw,
-    vehicle: Vehicle,
+    pub(crate) vehicle: Vehicle,
 }
 
 impl Loiter {
