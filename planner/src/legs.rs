@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mission::{Entries, Mission};
 use crate::options::Watch;
 use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
-use crate::transition::{Goal, Pilot, Unsolved, hover};
+use crate::transition::{Goal, Hint, Pilot, Unsolved, hover};
 use quad_dynamics::Motion;
 
 /// Candidates solved between two comparisons with the bounds. A constant, and not the number of threads, so that the same
@@ -24,6 +24,7 @@ pub(crate) struct Airspace<'a> {
 }
 
 /// A solved candidate.
+#[derive(Clone)]
 struct Arrival {
     /// Where in the list of candidates.
     index: usize,
@@ -77,35 +78,29 @@ impl Airspace<'_> {
                 outcome: Outcome::ProvenWorse { lower_bound: entrance.lower_bound },
             })
             .collect();
-        let mut best: Option<Arrival> = None;
+        let mut arrivals: Vec<Arrival> = Vec::new();
         for batch in entry::by_promise(&entrances).chunks(BATCH) {
             if self.watch.should_stop() {
                 break;
             }
-            let to_beat = best.as_ref().map_or(f64::INFINITY, |arrival| arrival.transition.duration);
+            let to_beat = fastest(&arrivals).map_or(f64::INFINITY, |arrival| arrival.transition.duration);
             let open: Vec<usize> =
                 batch.iter().copied().filter(|&i| entrances[i].lower_bound < to_beat).collect();
-            let solved = self.solve_all(here, orbit, &entrances, &open);
+            let solved = self.solve_all(here, orbit, &entrances, &open, &arrivals);
             self.watch.advance(batch.len());
             for (index, outcome) in open.into_iter().zip(solved) {
-                candidates[index].outcome = match &outcome {
-                    Ok(transition) => Outcome::Solved { duration: transition.duration },
-                    Err(Unsolved { primal_residual, dual_residual }) => {
-                        Outcome::Failed { primal_residual: *primal_residual, dual_residual: *dual_residual }
-                    }
-                };
-                let entry = entrances[index].entry;
+                candidates[index].outcome = outcome_of(&outcome);
                 if let Ok(transition) = outcome {
-                    best = faster(best, Arrival { index, entry, transition });
+                    arrivals.push(Arrival { index, entry: entrances[index].entry, transition });
                 }
             }
         }
-        if self.mission.transition.entries == Entries::Free
-            && let Some(sampled) = &best
-        {
-            best = self.freed(here, orbit, sampled, &mut candidates).or(best);
-        }
-        (best, candidates)
+        let Some(best) = fastest(&arrivals) else { return (None, candidates) };
+        let freed = match self.mission.transition.entries {
+            Entries::Free => self.freed(here, orbit, best, &mut candidates),
+            Entries::Sampled(_) => None,
+        };
+        (freed.or_else(|| Some(best.clone())), candidates)
     }
 
     /// One candidate after the other, or side by side with the feature `rayon`; the results are in the order of `open`.
@@ -115,11 +110,13 @@ impl Airspace<'_> {
         orbit: &Orbit,
         entrances: &[Entrance],
         open: &[usize],
+        arrivals: &[Arrival],
     ) -> Vec<Result<Transition, Unsolved>> {
         let solve = |&i: &usize| {
-            let entrance = &entrances[i];
-            let there = orbit.at(entrance.entry);
-            self.pilot.fly(here, Goal::Motion(there), &there, entrance.lower_bound)
+            let Entrance { entry, lower_bound } = entrances[i];
+            let there = orbit.at(entry);
+            let hint = neighbour(arrivals, entry).map_or(Hint::Time(lower_bound), Hint::Neighbour);
+            self.pilot.fly(here, Goal::Motion(there), &there, hint)
         };
         #[cfg(feature = "rayon")]
         {
@@ -139,8 +136,8 @@ impl Airspace<'_> {
         candidates: &mut Vec<Candidate>,
     ) -> Option<Arrival> {
         let goal = Goal::Circle(orbit, sampled.entry.direction);
-        let transition =
-            self.pilot.fly(here, goal, &orbit.at(sampled.entry), sampled.transition.duration).ok()?;
+        let hint = Hint::Neighbour(&sampled.transition);
+        let transition = self.pilot.fly(here, goal, &orbit.at(sampled.entry), hint).ok()?;
         if transition.duration >= sampled.transition.duration {
             return None;
         }
@@ -156,25 +153,44 @@ impl Airspace<'_> {
 
     fn to_pad(&self, here: &Motion, pad: [f64; 3]) -> (Option<Transition>, Vec<Candidate>) {
         let there = hover(self.mission, pad, [pad[0] + 1.0, pad[1]]);
-        let solved =
-            self.pilot.fly(here, Goal::Hover(there), &there, self.envelope.least_time_between(here, &there));
+        let solved = self.pilot.fly(
+            here,
+            Goal::Hover(there),
+            &there,
+            Hint::Time(self.envelope.least_time_between(here, &there)),
+        );
         self.watch.advance(1);
-        let outcome = match &solved {
-            Ok(transition) => Outcome::Solved { duration: transition.duration },
-            Err(Unsolved { primal_residual, dual_residual }) => {
-                Outcome::Failed { primal_residual: *primal_residual, dual_residual: *dual_residual }
-            }
-        };
+        let outcome = outcome_of(&solved);
         (solved.ok(), vec![Candidate { entry: None, outcome }])
     }
 }
 
-/// The faster of two arrivals; of equals the one that stands first in the list of candidates.
-fn faster(best: Option<Arrival>, new: Arrival) -> Option<Arrival> {
-    match best {
-        Some(old) if (old.transition.duration, old.index) <= (new.transition.duration, new.index) => {
-            Some(old)
+fn outcome_of(solved: &Result<Transition, Unsolved>) -> Outcome {
+    match *solved {
+        Ok(ref transition) => Outcome::Solved { duration: transition.duration },
+        Err(Unsolved { primal_residual, dual_residual }) => {
+            Outcome::Failed { primal_residual, dual_residual }
         }
-        _ => Some(new),
     }
+}
+
+/// The fastest arrival; of equals the one that stands first in the list of candidates.
+fn fastest(arrivals: &[Arrival]) -> Option<&Arrival> {
+    arrivals.iter().min_by(|a, b| {
+        a.transition.duration.total_cmp(&b.transition.duration).then_with(|| a.index.cmp(&b.index))
+    })
+}
+
+/// The solved transition whose entry is next to `entry` on the circle, in the same direction, up to an eighth of a turn away.
+fn neighbour(arrivals: &[Arrival], entry: Entry) -> Option<&Transition> {
+    let apart = |arrival: &Arrival| {
+        let turn = (arrival.entry.angle - entry.angle).rem_euclid(std::f64::consts::TAU);
+        turn.min(std::f64::consts::TAU - turn)
+    };
+    arrivals
+        .iter()
+        .filter(|arrival| arrival.entry.direction == entry.direction)
+        .filter(|arrival| apart(arrival) <= std::f64::consts::FRAC_PI_4 + 1e-9)
+        .min_by(|a, b| apart(a).total_cmp(&apart(b)).then_with(|| a.index.cmp(&b.index)))
+        .map(|arrival| &arrival.transition)
 }

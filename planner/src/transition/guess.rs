@@ -1,7 +1,9 @@
 //! First trajectories for the solver.
 
+use super::examine::{control, well_formed};
 use super::flight::Flight;
 use super::problem::KeepOut;
+use crate::plan::Transition;
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 use quad_dynamics::Motion;
 use quad_dynamics::frames::to_wxyz;
@@ -54,6 +56,42 @@ pub(crate) fn guess<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         }
         (state, control)
     })
+}
+
+/// A solved transition, bent so that it ends in another motion: the difference at the end is spread over the flight with
+/// the square of time, so that the start stays as it is. `None` if its arrays do not fit the model.
+pub(crate) fn bent<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
+    flight: &F,
+    neighbour: &Transition,
+    end: &Motion,
+) -> Option<Guess<NX, NU>> {
+    if !well_formed(neighbour, NX, NU) {
+        return None;
+    }
+    let states: Vec<SVector<f64, NX>> =
+        neighbour.states.iter().map(|state| SVector::from_column_slice(state)).collect();
+    let last = states[states.len() - 1];
+    let mut wanted = flight.state(end);
+    if let Some(q) = F::ATTITUDE
+        && wanted.fixed_rows::<4>(q).dot(&last.fixed_rows::<4>(q)) < 0.0
+    {
+        // The same attitude, on the side of the double cover where the neighbour ends.
+        let flipped = -wanted.fixed_rows::<4>(q);
+        wanted.fixed_rows_mut::<4>(q).copy_from(&flipped);
+    }
+    let fractions: Vec<f64> = neighbour.knots.iter().map(|knot| knot / neighbour.duration).collect();
+    let bend = |(state, s): (SVector<f64, NX>, &f64)| {
+        let mut state = state + (wanted - last) * (s * s);
+        if let Some(q) = F::ATTITUDE {
+            let norm = state.fixed_rows::<4>(q).norm().max(f64::MIN_POSITIVE);
+            state.fixed_rows_mut::<4>(q).unscale_mut(norm);
+        }
+        state
+    };
+    let states: Vec<SVector<f64, NX>> = states.into_iter().zip(&fractions).map(bend).collect();
+    let segments = neighbour.knots.len() - 1;
+    let controls = (0..=segments).map(|k| control(neighbour, k.min(segments - 1), 0.0)).collect();
+    Guess::from_samples(neighbour.duration, fractions, states, controls).ok()
 }
 
 /// The cubic Hermite curve through both positions with both velocities.

@@ -17,7 +17,7 @@ mod solve;
 
 pub(crate) use examine::{Examination, miss};
 pub(crate) use problem::Goal;
-pub(crate) use solve::Unsolved;
+pub(crate) use solve::{Hint, Unsolved};
 
 use crate::circles::Orbit;
 use crate::mission::{Mission, Model, TransitionSettings};
@@ -73,21 +73,20 @@ impl Pilot {
         Self { airframe, keep_outs, settings }
     }
 
-    /// The fastest transition to a goal; guesses lead `towards` (for a circle a promising entry), and `about` is a first idea
-    /// of the time (s).
+    /// The fastest transition to a goal; guesses lead `towards` (for a circle a promising entry).
     pub(crate) fn fly(
         &self,
         start: &Motion,
         goal: Goal,
         towards: &Motion,
-        about: f64,
+        hint: Hint,
     ) -> Result<Transition, Unsolved> {
         let surroundings = Surroundings {
             keep_outs: &self.keep_outs,
             heights: self.settings.heights,
             settings: &self.settings,
         };
-        with_flight!(&self.airframe, flight => solve::fly(flight, start, goal, towards, about, &surroundings))
+        with_flight!(&self.airframe, flight => solve::fly(flight, start, goal, towards, hint, &surroundings))
     }
 
     /// The transition as an independent integration of its controls sees it; `None` if it is malformed.

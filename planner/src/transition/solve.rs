@@ -2,7 +2,7 @@
 
 use super::examine::{Examination, examine, miss};
 use super::flight::Flight;
-use super::guess::guess;
+use super::guess::{bent, guess};
 use super::problem::{Goal, KeepOut, MinimumTime};
 use crate::mission::{Transcription, TransitionSettings};
 use crate::plan::{Entry, Miss, SolverStatus, Transition};
@@ -46,16 +46,28 @@ impl Unsolved {
 }
 
 /// The fastest transition from `start` to `goal` found from several guesses; `towards` is where guesses lead (for a
-/// circle a promising entry). `about` is a first idea of its time (s).
+/// circle a promising entry).
 pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     flight: &F,
     start: &Motion,
     goal: Goal,
     towards: &Motion,
-    about: f64,
+    hint: Hint,
     surroundings: &Surroundings,
 ) -> Result<Transition, Unsolved> {
     let mut unsolved = Unsolved::NOTHING;
+    let attempt = Attempt { flight, start, goal, surroundings, segments: surroundings.settings.segments };
+    let about = match hint {
+        Hint::Time(about) => about,
+        Hint::Neighbour(neighbour) => {
+            if let Some(first) = bent(flight, neighbour, towards)
+                && let Ok(transition) = attempt.refine(first, attempt.near(towards))
+            {
+                return Ok(transition);
+            }
+            neighbour.duration
+        }
+    };
     for (straight, stretch, finer) in [(false, 1.2, 1), (true, 1.5, 1), (false, 2.5, 2)] {
         let attempt =
             Attempt { flight, start, goal, surroundings, segments: surroundings.settings.segments * finer };
@@ -79,6 +91,15 @@ struct Setting {
     segments: usize,
 }
 
+/// What is known of a transition before it is solved.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Hint<'a> {
+    /// About how long it takes (s).
+    Time(f64),
+    /// One that starts in the same motion and ends nearby.
+    Neighbour(&'a Transition),
+}
+
 struct Attempt<'a, F> {
     flight: &'a F,
     start: &'a Motion,
@@ -88,7 +109,8 @@ struct Attempt<'a, F> {
 }
 
 impl<F> Attempt<'_, F> {
-    /// The keep-outs that a sensible flight may touch: those within a third of the distance from the straight line.
+    /// The keep-outs that a sensible flight may touch: those near the straight line. One that is entered all the same is
+    /// added when that is seen.
     fn near(&self, towards: &Motion) -> Vec<KeepOut> {
         let a = self.start.position;
         let (dx, dy) = (towards.position.x - a.x, towards.position.y - a.y);
