@@ -4,6 +4,7 @@ mod anneal;
 mod arcs;
 mod energy;
 mod options;
+mod population;
 mod random;
 mod recreate;
 mod ruin;
@@ -19,7 +20,7 @@ use crate::lower_bound::{self, LowerBounds};
 use crate::objective::Objective;
 use crate::problem::Problem;
 use crate::solution::Solution;
-use anneal::Annealing;
+use anneal::{Clock, Setting};
 use arcs::{Arcs, Computed, Neighbours, STORED, Stored};
 use christofides::Metric;
 use energy::Energy;
@@ -186,8 +187,10 @@ fn improve<M: Metric>(
         Objective::Makespan => bounds.makespan,
     };
     let target = bound * (1.0 + options.gap);
-    let annealing = Annealing { arcs, near: &near, places, objective: options.objective, limits, target };
-    annealing.run(&mut state, options, proceed);
+    let setting = Setting { arcs, near: &near, places, objective: options.objective, limits, target };
+    let mut clock =
+        Clock { iteration: 0, iterations: options.iterations, best: (0.0, 0.0), proceed, stopped: false };
+    population::evolve(&setting, &mut state, options, &mut clock);
     state.lists().into_iter().map(|list| list.into_iter().map(|i| targets[i as usize]).collect()).collect()
 }
 

@@ -1,0 +1,143 @@
+//! A population of annealed solutions that exchange whole routes.
+//!
+//! One annealing settles which region of the map belongs together, and no string taken out changes that any more. A child
+//! takes neighbouring routes of one parent and the routes of the other that fit best beside them; what is left is put
+//! back greedily, and a short annealing repairs the seam.
+
+use super::anneal::{Annealer, Clock, Setting, Value, better};
+use super::arcs::Arcs;
+use super::options::Options;
+use super::random::Random;
+use super::state::State;
+
+/// Solutions kept, annealings that fit the horizon, and the temperatures at which new solutions and children start, in mean arcs.
+const KEPT: usize = 8;
+const ANNEALINGS: u64 = 24;
+const HOT: f64 = 0.5;
+const WARM: f64 = 0.05;
+
+/// Shortest annealing worth the name, in iterations.
+const SHORTEST: u64 = 2_000;
+
+/// Relative difference in value below which two solutions count as the same one.
+const ALIKE: f64 = 1e-7;
+
+struct Member {
+    value: Value,
+    routes: Vec<Vec<u32>>,
+}
+
+/// Improves `state` until the budget is spent; never ends with a worse one.
+pub(crate) fn evolve<A: Arcs>(
+    setting: &Setting<'_, A>,
+    state: &mut State,
+    options: &Options,
+    clock: &mut Clock<'_>,
+) {
+    let horizon = options.horizon.unwrap_or(options.iterations).min(options.iterations);
+    let stretch = (horizon / ANNEALINGS).max(SHORTEST);
+    let mut annealer = Annealer::new(setting, Random::new(options.seed), state);
+    let start = state.lists();
+    let mut best = Member { value: setting.value(state), routes: start.clone() };
+    clock.note(state);
+    let mut pool: Vec<Member> = Vec::with_capacity(KEPT + 1);
+    while !clock.stopped && !setting.is_good_enough(best.value) {
+        if pool.len() < KEPT {
+            *state = State::new(state.n, &start, setting.arcs);
+            annealer.run(state, stretch, HOT, best.value, clock);
+        } else {
+            *state = child(&mut annealer, &pool, state.n);
+            annealer.run(state, stretch, WARM, best.value, clock);
+        }
+        let member = Member { value: setting.value(state), routes: state.lists() };
+        if better(member.value, best.value) {
+            best = Member { value: member.value, routes: member.routes.clone() };
+        }
+        admit(&mut pool, member);
+    }
+    *state = State::new(state.n, &best.routes, setting.arcs);
+    clock.note(state);
+    clock.report();
+}
+
+/// Adds a member; beyond the size kept, drops one that is alike or else the worst.
+fn admit(pool: &mut Vec<Member>, member: Member) {
+    let alike = |m: &Member| {
+        let same = |a: f64, b: f64| (a - b).abs() <= ALIKE * b.abs();
+        same(m.value.0, member.value.0) && same(m.value.1, member.value.1)
+    };
+    if let Some(twin) = pool.iter().position(alike) {
+        if better(member.value, pool[twin].value) {
+            pool[twin] = member;
+            return;
+        }
+        // While the pool fills, twins count, so that filling ends.
+        if pool.len() == KEPT {
+            return;
+        }
+    }
+    pool.push(member);
+    if pool.len() > KEPT {
+        let worst = (1..pool.len()).fold(0, |w, i| if better(pool[w].value, pool[i].value) { i } else { w });
+        pool.swap_remove(worst);
+    }
+}
+
+/// A child of two random members.
+fn child<A: Arcs>(annealer: &mut Annealer<'_, A>, pool: &[Member], n: usize) -> State {
+    let setting = annealer.setting;
+    let random = &mut annealer.random;
+    let first = random.below(pool.len());
+    let second = (first + 1 + random.below(pool.len() - 1)) % pool.len();
+    let (lists, mut left) = recombine(setting, &pool[first].routes, &pool[second].routes, n, random);
+    let mut state = State::new(n, &lists, setting.arcs);
+    annealer.energy.set_scale(pool[first].value.1.max(pool[second].value.1));
+    setting.places.recreate(&mut state, setting.arcs, &annealer.energy, &mut left, random);
+    state.commit();
+    state
+}
+
+/// Routes around a random target from `a`, the others from `b` without the targets visited already; and the targets left.
+fn recombine<A: Arcs>(
+    setting: &Setting<'_, A>,
+    a: &[Vec<u32>],
+    b: &[Vec<u32>],
+    n: usize,
+    random: &mut Random,
+) -> (Vec<Vec<u32>>, Vec<u32>) {
+    let m = a.len();
+    let mut vehicle_in_a = vec![0; n];
+    for (vehicle, list) in a.iter().enumerate() {
+        for &target in list {
+            vehicle_in_a[target as usize] = vehicle;
+        }
+    }
+    let seed = random.below(n);
+    let wanted = 1 + random.below(m.saturating_sub(1).max(1));
+    let mut from_a = vec![false; m];
+    let around = std::iter::once(seed).chain(setting.near.of(seed).iter().map(|&t| t as usize));
+    let mut chosen = 0;
+    for target in around {
+        if chosen < wanted && !std::mem::replace(&mut from_a[vehicle_in_a[target]], true) {
+            chosen += 1;
+        }
+    }
+    let mut lists: Vec<Vec<u32>> = (0..m).map(|v| if from_a[v] { a[v].clone() } else { vec![] }).collect();
+    let free = |target: u32| !from_a[vehicle_in_a[target as usize]];
+    let mut rest: Vec<(usize, Vec<u32>)> =
+        b.iter().map(|list| list.iter().copied().filter(|&t| free(t)).collect()).enumerate().collect();
+    if setting.places.alike {
+        // The fullest rests keep a vehicle; ties by vehicle.
+        rest.sort_by_key(|(vehicle, list)| (std::cmp::Reverse(list.len()), *vehicle));
+    } else {
+        rest.sort_by_key(|(vehicle, _)| (from_a[*vehicle], *vehicle));
+    }
+    let vehicles = (0..m).filter(|&v| !from_a[v]);
+    let mut left = Vec::new();
+    let mut rest = rest.into_iter();
+    for (vehicle, (_, list)) in vehicles.zip(rest.by_ref()) {
+        lists[vehicle] = list;
+    }
+    left.extend(rest.flat_map(|(_, list)| list));
+    (lists, left)
+}
