@@ -104,7 +104,7 @@ impl<'a, M: Metric> Ascent<'a, M> {
         if n <= STORED {
             matrix.reserve(n * n);
             for &a in targets {
-                matrix.extend(targets.iter().map(|&b| metric.distance(a, b)));
+                matrix.extend(targets.iter().map(|&b| either_way(metric, a, b)));
             }
         }
         let k = if routes == NumRoutes::Exactly { (m, m) } else { (1, m.min(n)) };
@@ -173,7 +173,7 @@ impl<'a, M: Metric> Ascent<'a, M> {
         for (position, &i) in self.outside.iter().enumerate() {
             let distance = match row {
                 Some(row) => row[i],
-                None => metric.distance(targets[vertex], targets[i]),
+                None => either_way(metric, targets[vertex], targets[i]),
             };
             let cost = distance + shift + self.multiplier[i];
             if cost < self.key[i] {
@@ -221,6 +221,11 @@ impl<'a, M: Metric> Ascent<'a, M> {
         }
         any
     }
+}
+
+/// The shorter of the two directions, so that the bound holds for asymmetric distances too.
+fn either_way(metric: &impl Metric, a: usize, b: usize) -> f64 {
+    metric.distance(a, b).min(metric.distance(b, a))
 }
 
 fn position_of_least(key: &[f64], outside: &[usize]) -> Option<usize> {

@@ -1,6 +1,6 @@
 //! Certified lower bounds: values that no solution of the same problem can be below.
 //!
-//! They hold for symmetric metrics that obey the triangle inequality, with service costs, and are computed for the
+//! They hold for distances that obey the triangle inequality, symmetric or not, with service costs, and are computed for the
 //! instance at hand. `S` is the sum of all service costs, `m` the number of vehicles, `n` the number of targets.
 //!
 //! | variant | bound | why |
@@ -13,8 +13,9 @@
 //! | limits, forbidden and required pairs | those of the problem without them, except that [`radius`] looks at allowed vehicles only | a restriction never improves the best |
 //! | several depots | legs to and from the nearest depot | a relaxation: each route's own depot is no nearer |
 //! | open routes | last legs cost 0 | exact |
+//! | asymmetric distances | the shorter direction between targets | a relaxation |
 //!
-//! Values are rounded down by a bound on the rounding error of their sums. With an asymmetric distance nothing is claimed.
+//! Values are rounded down by a bound on the rounding error of their sums. Without the triangle inequality nothing is claimed.
 
 mod ascent;
 mod quick;

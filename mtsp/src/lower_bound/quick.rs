@@ -61,10 +61,12 @@ pub fn pigeonhole<M: Metric>(problem: &Problem<'_, M>) -> f64 {
 fn pair<M: Metric>(problem: &Problem<'_, M>, a: usize, b: usize) -> f64 {
     let metric = problem.metric();
     let start = problem.start(0);
-    let between = metric.distance(a, b) + problem.service()[a] + problem.service()[b];
+    let service = problem.service()[a] + problem.service()[b];
     let (end_a, end_b) = match problem.end(0) {
         End::At(node) => (metric.distance(a, node), metric.distance(b, node)),
         End::Open => (0.0, 0.0),
     };
-    between + (metric.distance(start, a) + end_b).min(metric.distance(start, b) + end_a)
+    let forward = metric.distance(start, a) + metric.distance(a, b) + end_b;
+    let backward = metric.distance(start, b) + metric.distance(b, a) + end_a;
+    service + forward.min(backward)
 }
