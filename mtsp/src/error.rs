@@ -1,5 +1,7 @@
 //! What can be wrong with a problem, with labels, or with routes.
 
+use crate::fleet::{TargetId, VehicleId};
+
 /// Why an input was refused, or what is wrong with given routes.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -142,6 +144,24 @@ pub enum Error {
     LimitsNotMet {
         /// The greatest excess of a route over its limit in the best routes found: limits raised by this are met.
         excess: f64,
+    },
+    /// A position is NaN or infinite.
+    #[error("coordinate {axis} of the position is not finite")]
+    NonFinitePosition {
+        /// Index of the coordinate.
+        axis: usize,
+    },
+    /// A handle names no target of the fleet.
+    #[error("the fleet has no target {target:?}")]
+    UnknownTargetId {
+        /// The handle.
+        target: TargetId,
+    },
+    /// A handle names no vehicle of the fleet.
+    #[error("the fleet has no vehicle {vehicle:?}")]
+    UnknownVehicleId {
+        /// The handle.
+        vehicle: VehicleId,
     },
     /// A tour could not be made.
     #[error("the tour could not be made")]

@@ -15,6 +15,7 @@
 //! | routes from a clustering | [`assign`] |
 //! | routes from a tour | [`split`], [`k_splitour`] (with a proven factor) |
 //! | how good they can be | [`lower_bound`], [`Solution::gap`] |
+//! | targets that change under way | [`Fleet`]; [`procedure_1`], [`procedure_2`] (rounds, as in the paper) |
 //! | whether routes are valid | [`check`](check()) |
 //!
 //! # Example
@@ -51,20 +52,24 @@
 mod check;
 mod cluster_first;
 mod error;
+mod fleet;
 mod improve;
 mod initial;
 pub mod lower_bound;
 mod objective;
 mod problem;
+mod procedures;
 mod solution;
 mod split;
 
 pub use check::{LIMIT_TOLERANCE, Measured, check};
 pub use cluster_first::assign;
 pub use error::{Error, List};
+pub use fleet::{Absorb, Fleet, Revisit, TargetId, VehicleId};
 pub use improve::{Options, Progress, solve, solve_from, solve_with};
 pub use lower_bound::LowerBounds;
 pub use objective::Objective;
 pub use problem::{End, Problem};
+pub use procedures::{RoundsCost, procedure_1, procedure_2};
 pub use solution::Solution;
 pub use split::{k_splitour, split};

@@ -13,14 +13,17 @@ use super::state::State;
 /// Solutions kept, annealings that fit the horizon, and the temperatures at which new solutions and children start, in mean arcs.
 const KEPT: usize = 8;
 const ANNEALINGS: u64 = 24;
-const HOT: f64 = 0.5;
-const WARM: f64 = 0.05;
+const HOT: f64 = 3.0;
+const WARM: f64 = 0.1;
 
 /// Shortest annealing worth the name, in iterations.
 const SHORTEST: u64 = 2_000;
 
 /// Relative difference in value below which two solutions count as the same one.
 const ALIKE: f64 = 1e-7;
+
+/// Powers of the energy, as exponents of 2: 16 to 128. No single one is best on all instances.
+const POWERS: [u32; 4] = [4, 5, 6, 7];
 
 struct Member {
     value: Value,
@@ -42,8 +45,14 @@ pub(crate) fn evolve<A: Arcs>(
     clock.note(state);
     let mut pool: Vec<Member> = Vec::with_capacity(KEPT + 1);
     while !clock.stopped && !setting.is_good_enough(best.value) {
+        let squarings = POWERS[annealer.random.below(POWERS.len())];
+        annealer.energy.set_squarings(squarings);
         if pool.len() < KEPT {
-            *state = State::new(state.n, &start, setting.arcs);
+            *state = if pool.len().is_multiple_of(2) {
+                State::new(state.n, &start, setting.arcs)
+            } else {
+                scratch(&mut annealer, state.n, setting.limits.len())
+            };
             annealer.run(state, stretch, HOT, best.value, clock);
         } else {
             *state = child(&mut annealer, &pool, state.n);
@@ -58,6 +67,16 @@ pub(crate) fn evolve<A: Arcs>(
     *state = State::new(state.n, &best.routes, setting.arcs);
     clock.note(state);
     clock.report();
+}
+
+/// All targets put in greedily, in an order of chance.
+fn scratch<A: Arcs>(annealer: &mut Annealer<'_, A>, n: usize, vehicles: usize) -> State {
+    let setting = annealer.setting;
+    let mut state = State::new(n, &vec![vec![]; vehicles], setting.arcs);
+    let mut all: Vec<u32> = (0..n as u32).collect();
+    setting.places.recreate(&mut state, setting.arcs, &annealer.energy, &mut all, &mut annealer.random);
+    state.commit();
+    state
 }
 
 /// Adds a member; beyond the size kept, drops one that is alike or else the worst.
