@@ -1,0 +1,10 @@
+//! Writing what was planned: the plan itself, trajectories and autopilot missions.
+
+mod columns;
+pub mod folder;
+mod json;
+pub mod plan_json;
+pub mod qgc;
+mod trajectory_csv;
+
+pub use trajectory_csv::trajectory_csv;

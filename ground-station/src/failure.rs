@@ -1,0 +1,83 @@
+//! Why a command did not do what it was asked, and the exit code that says so.
+
+use crate::problem::Problem;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a command ended without its result.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// The input is wrong; nothing was computed and nothing was written.
+    #[error("{}", list(problems_word(.0), .0))]
+    Input(Vec<Problem>),
+    /// The output folder holds something that is not ours.
+    #[error(
+        "{} exists and does not hold a plan: nothing was planned or written; \
+         choose another folder with --out, or replace it with --force", folder.display()
+    )]
+    ForeignFolder {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The planner found no plan.
+    #[error("no plan: {source}")]
+    Planning {
+        /// What it says.
+        source: planner::Error,
+    },
+    /// The plan does not stand up to the independent check.
+    #[error("{}", list("the plan fails its verification; nothing was written", .failures))]
+    Verification {
+        /// Everything out of tolerance.
+        failures: Vec<planner::Failure>,
+    },
+    /// A file or folder could not be written.
+    #[error("{} cannot be written ({}): nothing was left behind; check permissions and space", path.display(), reason(source))]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+}
+
+impl Failure {
+    /// The exit code of the program: 2 for bad input, 1 for everything else.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(_) => 2,
+            _ => 1,
+        }
+    }
+
+    /// A function that turns an operating system's error about `path` into a failure.
+    pub fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Write { path, source }
+    }
+}
+
+/// What the operating system says, without the number of the error.
+#[must_use]
+pub fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    match text.find(" (os error") {
+        Some(end) => text[..end].to_lowercase(),
+        None => text,
+    }
+}
+
+fn problems_word(problems: &[Problem]) -> &'static str {
+    if problems.len() == 1 { "1 problem" } else { "several problems" }
+}
+
+fn list<T: ToString>(title: &str, lines: &[T]) -> String {
+    let mut text = format!("{title}:");
+    for line in lines {
+        text.push_str("\n  ");
+        text.push_str(&line.to_string());
+    }
+    text
+}

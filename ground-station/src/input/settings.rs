@@ -1,0 +1,109 @@
+//! The settings of a mission: `[depot]`, `[fleet]`, `[loiter]` and `[transition]`.
+
+use super::range::Range;
+use super::reader::Section;
+use super::targets::{Frame, position};
+use super::vehicle;
+use crate::words::{MODELS, TRANSCRIPTIONS};
+use planner::{Entries, Fleet, LoiterSettings, LoiterYaw, ShapingLimits, TransitionSettings};
+
+/// Words for [`LoiterYaw`].
+const YAWS: [(&str, LoiterYaw); 2] =
+    [("along-track", LoiterYaw::AlongTrack), ("at-target", LoiterYaw::AtTarget)];
+/// More vehicles than this are a slip of the keyboard.
+const MOST_VEHICLES: u64 = 1000;
+/// Ten turns (degrees): more overlap than any camera wants.
+const MOST_SWEEP: f64 = 3600.0;
+
+/// `[depot]`; where it is must be said.
+pub fn depot(root: &Section<'_, '_>, frame: Frame) -> Option<[f64; 2]> {
+    let section = root.section("depot");
+    let place = position(&section, frame);
+    section.finish();
+    place
+}
+
+/// `[fleet]` and `[vehicle]`; how many vehicles there are must be said.
+pub fn fleet(root: &Section<'_, '_>) -> Fleet {
+    let section = root.section("fleet");
+    let vehicles = section.count("vehicles", 1, MOST_VEHICLES);
+    if !section.has("vehicles") {
+        section.missing("vehicles", "give the number of vehicles, at least 1");
+    }
+    let preset = section.item("preset");
+    let fleet = Fleet {
+        vehicles: vehicles.and_then(|vehicles| usize::try_from(vehicles).ok()).unwrap_or(1),
+        vehicle: vehicle::read(root, preset.as_ref()),
+        separation: section.number("separation", Range::NOT_NEGATIVE).unwrap_or(3.0),
+        endurance: section.number("endurance", Range::POSITIVE).unwrap_or(f64::INFINITY),
+    };
+    section.finish();
+    fleet
+}
+
+/// `[loiter]`; angles in degrees.
+pub fn loiter(root: &Section<'_, '_>) -> LoiterSettings {
+    let default = LoiterSettings::default();
+    let section = root.section("loiter");
+    let settings = LoiterSettings {
+        radius: section.number("radius", Range::POSITIVE).unwrap_or(default.radius),
+        height: section.number("height", Range::POSITIVE).unwrap_or(default.height),
+        sweep: section.number("sweep", Range::above_to(0.0, MOST_SWEEP)).map_or(default.sweep, f64::to_radians),
+        thrust_budget: section.number("thrust_budget", Range::SHARE).unwrap_or(default.thrust_budget),
+        yaw: section.choice("yaw", &YAWS).unwrap_or(default.yaw),
+        speed_limit: section.number("speed_limit", Range::POSITIVE).unwrap_or(default.speed_limit),
+        acceleration_limit: section
+            .number("acceleration_limit", Range::POSITIVE)
+            .unwrap_or(default.acceleration_limit),
+    };
+    section.finish();
+    settings
+}
+
+/// `[transition]` and `[transition.shaping]`.
+pub fn transition(root: &Section<'_, '_>) -> TransitionSettings {
+    let default = TransitionSettings::default();
+    let section = root.section("transition");
+    let settings = TransitionSettings {
+        model: section.choice("model", &MODELS).unwrap_or(default.model),
+        entries: entries(&section).unwrap_or(default.entries),
+        segments: section.count("segments", 4, 2000).map_or(default.segments, |segments| segments as usize),
+        transcription: section.choice("transcription", &TRANSCRIPTIONS).unwrap_or(default.transcription),
+        thrust_budget: section.number("thrust_budget", Range::SHARE).unwrap_or(default.thrust_budget),
+        safe_distance: section.number("safe_distance", Range::NOT_NEGATIVE).unwrap_or(default.safe_distance),
+        heights: heights(&section).unwrap_or(default.heights),
+        shaping: shaping(&section, default.shaping),
+    };
+    section.finish();
+    settings
+}
+
+fn entries(section: &Section<'_, '_>) -> Option<Entries> {
+    const MOST_ENTRIES: u64 = 360;
+    let item = section.item("entries")?;
+    if item.is_text() {
+        return item.choice(&[("free", Entries::Free)]);
+    }
+    item.count(1, MOST_ENTRIES).map(|entries| Entries::Sampled(entries as usize))
+}
+
+fn heights(section: &Section<'_, '_>) -> Option<[f64; 2]> {
+    let item = section.item("heights")?;
+    let [low, high] = item.numbers::<2>(Range::NOT_NEGATIVE)?;
+    if low >= high {
+        item.wrong("is upside down", "give [least, greatest] height in metres");
+        return None;
+    }
+    Some([low, high])
+}
+
+fn shaping(transition: &Section<'_, '_>, default: ShapingLimits) -> ShapingLimits {
+    let section = transition.section("shaping");
+    let limits = ShapingLimits {
+        speed: section.number("speed", Range::POSITIVE).unwrap_or(default.speed),
+        acceleration: section.number("acceleration", Range::POSITIVE).unwrap_or(default.acceleration),
+        jerk: section.number("jerk", Range::POSITIVE).unwrap_or(default.jerk),
+    };
+    section.finish();
+    limits
+}

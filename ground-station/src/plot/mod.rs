@@ -1,0 +1,16 @@
+//! Pictures of a plan as SVG, drawn from plain data.
+//!
+//! The writer is our own hundred lines: a map wants equal axes, dashed tours, arrows on circles and labels that keep out
+//! of each other's way, which charting libraries leave to the caller anyway, and a picture without embedded fonts or
+//! scripts opens everywhere.
+
+mod axis;
+mod labels;
+mod map;
+mod palette;
+mod path;
+mod profile;
+mod svg;
+
+pub use map::{MapCircle, MapScene, MapTarget, MapVehicle, map};
+pub use profile::{Band, Limit, Panel, Profile, profile};
