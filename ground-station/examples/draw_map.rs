@@ -2,7 +2,9 @@
 //!
 //! Shows that the pictures need no plan: whoever has routes and paths of their own can draw them.
 
-use ground_station::plot::{Band, Limit, MapCircle, MapScene, MapTarget, MapVehicle, Panel, Profile, map, profile};
+use ground_station::plot::{
+    Band, Limit, MapCircle, MapScene, MapTarget, MapVehicle, Panel, Profile, map, profile,
+};
 
 const TARGETS: [[f64; 2]; 6] =
     [[12.0, 8.0], [33.0, 6.0], [41.0, 15.5], [8.0, 31.0], [19.0, 44.5], [31.5, 41.5]];
@@ -15,8 +17,12 @@ fn main() -> std::io::Result<()> {
         position,
         safe_distance: 1.5,
     });
-    let scene =
-        MapScene { title: "two vehicles, six targets".into(), depot: [0.0, 0.0], targets: targets.collect(), vehicles };
+    let scene = MapScene {
+        title: "two vehicles, six targets".into(),
+        depot: [0.0, 0.0],
+        targets: targets.collect(),
+        vehicles,
+    };
     std::fs::write(format!("{folder}/map.svg"), map(&scene))?;
     std::fs::write(format!("{folder}/profile.svg"), profile(&speeds()))
 }
@@ -45,6 +51,7 @@ fn speeds() -> Profile {
     let values = times.iter().map(|time| 4.0 + 3.0 * (0.8 * time).sin()).collect();
     let limits = vec![Limit { name: "speed limit".into(), value: 8.0 }];
     let panel = Panel { title: "speed (m/s)".into(), values, limits };
-    let loiters = vec![Band { span: [5.0, 9.0], label: "1".into() }, Band { span: [14.0, 18.0], label: "2".into() }];
+    let loiters =
+        vec![Band { span: [5.0, 9.0], label: "1".into() }, Band { span: [14.0, 18.0], label: "2".into() }];
     Profile { title: "vehicle 1".into(), vehicle: 0, times, panels: vec![panel.clone(), panel], loiters }
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum Failure {
     /// The input is wrong; nothing was computed and nothing was written.
-    #[error("{}", list(problems_word(.0), .0))]
+    #[error("{}", list(problems_word(_0), _0))]
     Input(Vec<Problem>),
     /// The output folder holds something that is not ours.
     #[error(
@@ -27,10 +27,18 @@ pub enum Failure {
         source: planner::Error,
     },
     /// The plan does not stand up to the independent check.
-    #[error("{}", list("the plan fails its verification; nothing was written", .failures))]
+    #[error("{report}\n{}", list("the plan fails its verification and was not written", failures))]
     Verification {
+        /// The tables of the plan and of the check.
+        report: String,
         /// Everything out of tolerance.
         failures: Vec<planner::Failure>,
+    },
+    /// A file could not be put into its format.
+    #[error("the plan cannot be put into its file format ({source}); nothing was written")]
+    Format {
+        /// What the serialiser says.
+        source: serde_json::Error,
     },
     /// A file or folder could not be written.
     #[error("{} cannot be written ({}): nothing was left behind; check permissions and space", path.display(), reason(source))]
@@ -50,6 +58,19 @@ impl Failure {
             Self::Input(_) => 2,
             _ => 1,
         }
+    }
+
+    /// The failure for an error of the planner on the mission of a file.
+    #[must_use]
+    pub fn of_planner(file: &str, error: planner::Error) -> Self {
+        let planner::Error::Mission { problems } = error else { return Self::Planning { source: error } };
+        let problem = |problem: &planner::Problem| Problem {
+            file: file.to_owned(),
+            line: None,
+            key: problem.field().to_owned(),
+            message: problem.to_string(),
+        };
+        Self::Input(problems.iter().map(problem).collect())
     }
 
     /// A function that turns an operating system's error about `path` into a failure.

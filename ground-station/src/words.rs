@@ -1,13 +1,14 @@
 //! The words for what the planner counts as values, as mission files, plans and tables use them.
 
 use crate::input::Autopilot;
+use planner::quad_dynamics::Limit;
 use planner::{Direction, Model, Objective, Pipeline, SolverStatus, Transcription};
-use planner::quad_dynamics::loiter::Limit;
 
 /// Words for [`Autopilot`].
 pub const AUTOPILOTS: [(&str, Autopilot); 2] = [("ardupilot", Autopilot::ArduPilot), ("px4", Autopilot::Px4)];
 /// Words for [`Objective`].
-pub const OBJECTIVES: [(&str, Objective); 2] = [("makespan", Objective::Makespan), ("total", Objective::Total)];
+pub const OBJECTIVES: [(&str, Objective); 2] =
+    [("makespan", Objective::Makespan), ("total", Objective::Total)];
 /// Words for [`Pipeline`].
 pub const PIPELINES: [(&str, Pipeline); 2] = [("optimised", Pipeline::Optimised), ("paper", Pipeline::Paper)];
 /// Words for [`Model`].
@@ -52,5 +53,5 @@ pub fn sign(direction: Direction) -> i8 {
 /// What limits the speed of a loiter.
 #[must_use]
 pub fn limit(limit: Limit) -> String {
-    format!("{limit:?}").to_lowercase()
+    limit.to_string()
 }

@@ -9,7 +9,8 @@ const ACCELERATION: [&str; 3] = ["acceleration_east_m_s2", "acceleration_north_m
 const ATTITUDE: [&str; 4] = ["attitude_w", "attitude_x", "attitude_y", "attitude_z"];
 const BODY_RATES: [&str; 3] = ["body_rate_x_rad_s", "body_rate_y_rad_s", "body_rate_z_rad_s"];
 const THRUST_VECTOR: [&str; 3] = ["thrust_east_N", "thrust_north_N", "thrust_up_N"];
-const ROTOR_THRUSTS: [&str; 4] = ["rotor_1_thrust_N", "rotor_2_thrust_N", "rotor_3_thrust_N", "rotor_4_thrust_N"];
+const ROTOR_THRUSTS: [&str; 4] =
+    ["rotor_1_thrust_N", "rotor_2_thrust_N", "rotor_3_thrust_N", "rotor_4_thrust_N"];
 const JERK: [&str; 3] = ["jerk_east_m_s3", "jerk_north_m_s3", "jerk_up_m_s3"];
 
 /// The states of a model.
@@ -47,9 +48,12 @@ mod tests {
 
     #[test]
     fn every_model_has_as_many_names_as_the_design_says() {
-        for (model, states, controls) in
-            [(Model::PointMass, 6, 3), (Model::JerkLimited, 9, 3), (Model::ThrustRate, 10, 4), (Model::RigidBody, 13, 4)]
-        {
+        for (model, states, controls) in [
+            (Model::PointMass, 6, 3),
+            (Model::JerkLimited, 9, 3),
+            (Model::ThrustRate, 10, 4),
+            (Model::RigidBody, 13, 4),
+        ] {
             assert_eq!((state_columns(model).len(), control_columns(model).len()), (states, controls));
         }
     }

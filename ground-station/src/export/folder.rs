@@ -45,7 +45,8 @@ pub fn check(folder: &Path, force: bool) -> Result<(), Failure> {
 /// Whether `plan.json` begins with our format marker.
 fn holds_a_plan(folder: &Path) -> bool {
     let mut head = String::new();
-    let read = fs::File::open(folder.join("plan.json")).and_then(|file| file.take(256).read_to_string(&mut head));
+    let read =
+        fs::File::open(folder.join("plan.json")).and_then(|file| file.take(256).read_to_string(&mut head));
     read.is_ok() && head.contains(&format!("\"format\": \"{FORMAT}\""))
 }
 
@@ -70,7 +71,8 @@ pub fn write(folder: &Path, files: &[OutputFile], force: bool) -> Result<(), Fai
 
 /// Creates the folders that are missing; returns them, innermost first.
 fn create_parents(parent: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let missing = parent.ancestors().take_while(|ancestor| !ancestor.as_os_str().is_empty() && !ancestor.exists());
+    let missing =
+        parent.ancestors().take_while(|ancestor| !ancestor.as_os_str().is_empty() && !ancestor.exists());
     let missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
     fs::create_dir_all(parent).map_err(Failure::writing(parent))?;
     Ok(missing)
@@ -113,18 +115,23 @@ mod tests {
 
     fn plan(mark: &str) -> Vec<OutputFile> {
         let content = format!("{{\n  \"format\": \"{FORMAT}\",\n  \"mark\": \"{mark}\"\n}}");
-        vec![OutputFile { name: "plan.json".into(), content }, OutputFile { name: "a.csv".into(), content: mark.into() }]
+        vec![
+            OutputFile { name: "plan.json".into(), content },
+            OutputFile { name: "a.csv".into(), content: mark.into() },
+        ]
     }
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut names: Vec<String> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
         names.sort();
         names
     }
 
     #[test]
-    fn new_empty_and_own_folders_are_written_and_nothing_else_stays() -> Result<(), Box<dyn std::error::Error>> {
+    fn new_empty_and_own_folders_are_written_and_nothing_else_stays() -> Result<(), Box<dyn std::error::Error>>
+    {
         let home = tempfile::tempdir()?;
         let out = home.path().join("deep/er/out");
         write(&out, &plan("one"), false)?;

@@ -72,7 +72,10 @@ mod tests {
     fn objects_are_tall_and_lists_are_wide() -> serde_json::Result<()> {
         let value = json!({"a": [1.5, 2], "b": {}, "c": [{"d": null}], "e": []});
         let text = to_text(&value)?;
-        assert_eq!(text, "{\n  \"a\": [1.5, 2],\n  \"b\": {},\n  \"c\": [{\n    \"d\": null\n  }],\n  \"e\": []\n}\n");
+        assert_eq!(
+            text,
+            "{\n  \"a\": [1.5, 2],\n  \"b\": {},\n  \"c\": [{\n    \"d\": null\n  }],\n  \"e\": []\n}\n"
+        );
         assert_eq!(serde_json::from_str::<serde_json::Value>(&text)?, value);
         Ok(())
     }

@@ -7,4 +7,4 @@ pub mod plan_json;
 pub mod qgc;
 mod trajectory_csv;
 
-pub use trajectory_csv::trajectory_csv;
+pub use trajectory_csv::{members, trajectory_csv};

@@ -25,7 +25,11 @@ pub fn read(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Liste
         feature.read(value, wrong);
     }
     if targets.is_empty() {
-        wrong(None, "features", "features: no point could be read: give a FeatureCollection of points".into());
+        wrong(
+            None,
+            "features",
+            "features: no point could be read: give a FeatureCollection of points".into(),
+        );
     }
     targets
 }
@@ -34,9 +38,11 @@ pub fn read(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Liste
 fn members(mut document: JsonValue, wrong: Wrong<'_>) -> Vec<(String, JsonValue)> {
     let kind = document.get("type").and_then(JsonValue::as_str).unwrap_or_default().to_owned();
     match (kind.as_str(), document.get_mut("features").map(JsonValue::take)) {
-        ("FeatureCollection", Some(JsonValue::Array(features))) => {
-            features.into_iter().enumerate().map(|(index, feature)| (format!("features[{index}]"), feature)).collect()
-        }
+        ("FeatureCollection", Some(JsonValue::Array(features))) => features
+            .into_iter()
+            .enumerate()
+            .map(|(index, feature)| (format!("features[{index}]"), feature))
+            .collect(),
         ("Feature", _) => vec![("feature".to_owned(), document)],
         ("Point" | "MultiPoint", _) => {
             let mut feature = JsonObject::new();
@@ -47,7 +53,11 @@ fn members(mut document: JsonValue, wrong: Wrong<'_>) -> Vec<(String, JsonValue)
         }
         _ => {
             let shown = if kind.is_empty() { "missing".to_owned() } else { abridged(&format!("\"{kind}\"")) };
-            wrong(None, "type", format!("type is {shown}: give a FeatureCollection (with its list of features) of points"));
+            wrong(
+                None,
+                "type",
+                format!("type is {shown}: give a FeatureCollection (with its list of features) of points"),
+            );
             Vec::new()
         }
     }
@@ -66,7 +76,11 @@ impl FeatureReader<'_> {
         let feature = match serde_json::from_value::<Feature>(value) {
             Ok(feature) => feature,
             Err(error) => {
-                wrong(None, key, format!("{key} is no feature ({}): correct it", abridged(&error.to_string())));
+                wrong(
+                    None,
+                    key,
+                    format!("{key} is no feature ({}): correct it", abridged(&error.to_string())),
+                );
                 return;
             }
         };
@@ -81,7 +95,10 @@ impl FeatureReader<'_> {
             Some(other) => wrong(
                 None,
                 key,
-                format!("{key}.geometry is a {}: targets are points; remove it or replace it by its centre", other.type_name()),
+                format!(
+                    "{key}.geometry is a {}: targets are points; remove it or replace it by its centre",
+                    other.type_name()
+                ),
             ),
             None => wrong(None, key, format!("{key}.geometry is missing: give a Point")),
         }
@@ -100,7 +117,10 @@ impl FeatureReader<'_> {
             let found = value.as_f64().filter(|&number| range.contains(number));
             if found.is_none() {
                 let path = format!("{}.properties.{key}", self.key);
-                let message = format!("{path} = {} is out of range: give a number {range}", abridged(&value.to_string()));
+                let message = format!(
+                    "{path} = {} is out of range: give a number {range}",
+                    abridged(&value.to_string())
+                );
                 wrong(None, &path, message);
             }
             found
@@ -122,11 +142,16 @@ impl FeatureReader<'_> {
             return;
         };
         let mut inside = true;
-        for (what, value, range) in [("longitude", longitude, LONGITUDES), ("latitude", latitude, LATITUDES)] {
+        for (what, value, range) in [("longitude", longitude, LONGITUDES), ("latitude", latitude, LATITUDES)]
+        {
             if !range.contains(value) {
                 inside = false;
                 let hint = "GeoJSON has the longitude first, in degrees of WGS-84";
-                wrong(None, &key, format!("{key}: {what} {value} is out of range: give a number {range}; {hint}"));
+                wrong(
+                    None,
+                    &key,
+                    format!("{key}: {what} {value} is out of range: give a number {range}; {hint}"),
+                );
             }
         }
         if !inside {
@@ -139,7 +164,9 @@ impl FeatureReader<'_> {
                 line: None,
                 key: self.key.to_owned(),
             }),
-            Err((what, remedy)) => wrong(None, &key, format!("{key} = [{longitude}, {latitude}] {what}: {remedy}")),
+            Err((what, remedy)) => {
+                wrong(None, &key, format!("{key} = [{longitude}, {latitude}] {what}: {remedy}"))
+            }
         }
     }
 }
@@ -166,7 +193,10 @@ mod tests {
         );
         assert!(messages.is_empty(), "{messages:?}");
         assert_eq!(targets.len(), 3);
-        assert_eq!(targets[0].target, Target { name: "oak".into(), radius: Some(4.0), ..Target::at([0.0, 0.0]) });
+        assert_eq!(
+            targets[0].target,
+            Target { name: "oak".into(), radius: Some(4.0), ..Target::at([0.0, 0.0]) }
+        );
         assert!(targets[1].target.position[1] > 110.0 && targets[2].target.position[0] < -82.0);
     }
 
@@ -193,7 +223,10 @@ mod tests {
         assert_eq!(&messages[..4], wanted);
         assert!(messages[4].contains("km from the origin: check the origin"), "{}", messages[4]);
         assert_eq!(messages[5], "features[4].geometry is missing: give a Point");
-        assert!(messages[6].starts_with("features[5] is no feature") && messages[7].starts_with("features[6] is no feature"));
+        assert!(
+            messages[6].starts_with("features[5] is no feature")
+                && messages[7].starts_with("features[6] is no feature")
+        );
     }
 
     #[test]

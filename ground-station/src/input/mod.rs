@@ -83,10 +83,12 @@ pub fn parse(file: &str, source: &str, folder: &Path) -> Result<MissionFile, Vec
     let mut mission_file = None;
     if let Some(document) = reader.parse() {
         let root = Section::root(&reader, &document);
-        let (read, listed) = read_root(&root, &reader, folder);
+        let read = read_root(&root, &reader, folder);
         root.finish();
-        add_planner_problems(&reader, &read.mission, &listed);
-        mission_file = Some(read);
+        if let Some((read, listed)) = read {
+            add_planner_problems(&reader, &read.mission, &listed);
+            mission_file = Some(read);
+        }
     }
     let problems = reader.into_problems();
     match mission_file {
@@ -95,13 +97,17 @@ pub fn parse(file: &str, source: &str, folder: &Path) -> Result<MissionFile, Vec
     }
 }
 
-fn read_root(root: &Section<'_, '_>, reader: &Reader<'_>, folder: &Path) -> (MissionFile, Vec<Listed>) {
+fn read_root(
+    root: &Section<'_, '_>,
+    reader: &Reader<'_>,
+    folder: &Path,
+) -> Option<(MissionFile, Vec<Listed>)> {
     let name = root.text("name").unwrap_or_default();
     let origin = read_origin(root);
     let autopilot = root.choice("autopilot", &words::AUTOPILOTS);
     let frame = Frame { origin };
     let (listed, merge_within) = targets::read(root, reader, frame, folder);
-    let fleet = settings::fleet(root);
+    let fleet = settings::fleet(root, reader)?;
     let targets = listed.iter().map(|listed| listed.target.clone()).collect();
     let mut mission = Mission::new(fleet.vehicle.clone(), fleet.vehicles, targets);
     mission.fleet = fleet;
@@ -114,7 +120,8 @@ fn read_root(root: &Section<'_, '_>, reader: &Reader<'_>, folder: &Path) -> (Mis
     mission.pipeline = root.choice("pipeline", &words::PIPELINES).unwrap_or(mission.pipeline);
     mission.seed = root.count("seed", 0, i64::MAX as u64).unwrap_or(mission.seed);
     let file = reader.file().to_owned();
-    (MissionFile { file, mission, origin, autopilot: autopilot.unwrap_or(Autopilot::ArduPilot) }, listed)
+    let autopilot = autopilot.unwrap_or(Autopilot::ArduPilot);
+    Some((MissionFile { file, mission, origin, autopilot }, listed))
 }
 
 /// `origin = { latitude, longitude, altitude }`; altitude is 0 if absent.

@@ -11,8 +11,6 @@ pub struct Range {
 }
 
 impl Range {
-    /// Every finite number.
-    pub const ANY: Self = Self { low: f64::NEG_INFINITY, low_included: false, high: f64::INFINITY };
     /// Above 0.
     pub const POSITIVE: Self = Self { low: 0.0, low_included: false, high: f64::INFINITY };
     /// 0 or more.
@@ -43,13 +41,11 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { low, high, .. } = self;
-        match (low.is_finite(), self.low_included, high.is_finite()) {
-            (false, _, false) => write!(formatter, "a finite number"),
-            (false, _, true) => write!(formatter, "at most {high}"),
-            (true, true, false) => write!(formatter, "{low} or more"),
-            (true, false, false) => write!(formatter, "above {low}"),
-            (true, true, true) => write!(formatter, "from {low} to {high}"),
-            (true, false, true) => write!(formatter, "above {low}, at most {high}"),
+        match (self.low_included, high.is_finite()) {
+            (true, false) => write!(formatter, "{low} or more"),
+            (false, false) => write!(formatter, "above {low}"),
+            (true, true) => write!(formatter, "from {low} to {high}"),
+            (false, true) => write!(formatter, "above {low}, at most {high}"),
         }
     }
 }
@@ -60,8 +56,10 @@ mod tests {
 
     #[test]
     fn ends_and_words_agree() {
-        assert!(!Range::POSITIVE.contains(0.0) && Range::NOT_NEGATIVE.contains(0.0) && Range::SHARE.contains(1.0));
-        for range in [Range::ANY, Range::POSITIVE, Range::NOT_NEGATIVE, Range::SHARE] {
+        assert!(
+            !Range::POSITIVE.contains(0.0) && Range::NOT_NEGATIVE.contains(0.0) && Range::SHARE.contains(1.0)
+        );
+        for range in [Range::POSITIVE, Range::NOT_NEGATIVE, Range::SHARE] {
             for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 assert!(!range.contains(value), "{range} {value}");
             }

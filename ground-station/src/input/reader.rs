@@ -160,11 +160,6 @@ impl<'r, 'd> Section<'r, 'd> {
         self.item(key)?.choice(words)
     }
 
-    /// Numbers in a range, so many of them.
-    pub fn numbers<const N: usize>(&self, key: &'static str, range: Range) -> Option<[f64; N]> {
-        self.item(key)?.numbers(range)
-    }
-
     /// A table; empty if it is absent or no table.
     pub fn section(&self, key: &'static str) -> Section<'r, 'd> {
         let table = self.item(key).and_then(|item| item.table());
@@ -239,7 +234,7 @@ impl<'r, 'd> Item<'r, 'd> {
         match value.filter(|&value| range.contains(value)) {
             Some(value) => Some(value),
             None => {
-                self.wrong("is out of range", &format!("give a number {range}").replace("a number a f", "a f"));
+                self.wrong("is out of range", &format!("give a number {range}"));
                 None
             }
         }
@@ -284,7 +279,8 @@ impl<'r, 'd> Item<'r, 'd> {
         let found = words.iter().find(|(word, _)| *word == text).map(|&(_, value)| value);
         if found.is_none() {
             let names: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-            let remedy = nearest(text, &names).map_or_else(|| format!("give {list}"), |near| format!("did you mean \"{near}\"?"));
+            let remedy = nearest(text, &names)
+                .map_or_else(|| format!("give {list}"), |near| format!("did you mean \"{near}\"?"));
             self.wrong("is not known", &remedy);
         }
         found
@@ -294,6 +290,12 @@ impl<'r, 'd> Item<'r, 'd> {
     #[must_use]
     pub fn is_text(&self) -> bool {
         self.value.get_ref().is_str()
+    }
+
+    /// Whether the value is a list, for keys that take a list or something else.
+    #[must_use]
+    pub fn is_list(&self) -> bool {
+        self.value.get_ref().is_array()
     }
 
     /// The value as numbers in a range, so many of them.
@@ -320,7 +322,8 @@ impl<'r, 'd> Item<'r, 'd> {
             self.wrong_type(wanted);
             return None;
         };
-        let item = |(index, value)| Item { reader: self.reader, path: format!("{}[{index}]", self.path), value };
+        let item =
+            |(index, value)| Item { reader: self.reader, path: format!("{}[{index}]", self.path), value };
         Some(array.iter().enumerate().map(item).collect())
     }
 
@@ -361,8 +364,8 @@ mod tests {
     fn every_problem_is_collected_with_its_line() {
         let source = "a = \"x\"\nb = nan\nc = 0\ndd = 2\n[t]\nz = 1.5\n";
         let problems = problems_of(source, |root| {
-            assert_eq!(root.number("a", Range::ANY), None);
-            assert_eq!(root.number("b", Range::ANY), None);
+            assert_eq!(root.number("a", Range::POSITIVE), None);
+            assert_eq!(root.number("b", Range::between(-1.0, 1.0)), None);
             assert_eq!(root.number("c", Range::POSITIVE), None);
             assert_eq!(root.count("d", 0, 9), None);
             let section = root.section("t");
@@ -373,7 +376,7 @@ mod tests {
             problems,
             [
                 "m.toml:1: a = \"x\" is a string: give a number",
-                "m.toml:2: b = nan is out of range: give a finite number",
+                "m.toml:2: b = nan is out of range: give a number from -1 to 1",
                 "m.toml:3: c = 0 is out of range: give a number above 0",
                 "m.toml:4: dd = 2: unknown key: did you mean \"d\"?",
                 "m.toml:6: t.z = 1.5 is a float: give a whole number",
@@ -392,9 +395,10 @@ mod tests {
     fn lists_words_and_tables_say_what_they_want() {
         let source = "p = [1, \"x\"]\nq = [1]\nr = 3\nw = \"rigid\"\nt = 5\nlist = 4\n";
         let problems = problems_of(source, |root| {
-            assert_eq!(root.numbers::<2>("p", Range::ANY), None);
-            assert_eq!(root.numbers::<2>("q", Range::ANY), None);
-            assert_eq!(root.numbers::<2>("r", Range::ANY), None);
+            let numbers = |key| root.item(key).and_then(|item| item.numbers::<2>(Range::NOT_NEGATIVE));
+            assert_eq!(numbers("p"), None);
+            assert_eq!(numbers("q"), None);
+            assert_eq!(numbers("r"), None);
             assert_eq!(root.choice("w", &[("rigid-body", 1), ("point-mass", 2)]), None);
             root.section("t").finish();
             assert!(root.item("list").and_then(|item| item.items("a list")).is_none());

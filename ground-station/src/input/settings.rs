@@ -1,7 +1,7 @@
 //! The settings of a mission: `[depot]`, `[fleet]`, `[loiter]` and `[transition]`.
 
 use super::range::Range;
-use super::reader::Section;
+use super::reader::{Reader, Section};
 use super::targets::{Frame, position};
 use super::vehicle;
 use crate::words::{MODELS, TRANSCRIPTIONS};
@@ -24,19 +24,20 @@ pub fn depot(root: &Section<'_, '_>, frame: Frame) -> Option<[f64; 2]> {
 }
 
 /// `[fleet]` and `[vehicle]`; how many vehicles there are must be said.
-pub fn fleet(root: &Section<'_, '_>) -> Fleet {
+pub fn fleet(root: &Section<'_, '_>, reader: &Reader<'_>) -> Option<Fleet> {
     let section = root.section("fleet");
     let vehicles = section.count("vehicles", 1, MOST_VEHICLES);
     if !section.has("vehicles") {
         section.missing("vehicles", "give the number of vehicles, at least 1");
     }
     let preset = section.item("preset");
-    let fleet = Fleet {
+    let vehicle = vehicle::read(root, reader, preset.as_ref());
+    let fleet = vehicle.map(|vehicle| Fleet {
         vehicles: vehicles.and_then(|vehicles| usize::try_from(vehicles).ok()).unwrap_or(1),
-        vehicle: vehicle::read(root, preset.as_ref()),
+        vehicle,
         separation: section.number("separation", Range::NOT_NEGATIVE).unwrap_or(3.0),
         endurance: section.number("endurance", Range::POSITIVE).unwrap_or(f64::INFINITY),
-    };
+    });
     section.finish();
     fleet
 }
@@ -48,7 +49,9 @@ pub fn loiter(root: &Section<'_, '_>) -> LoiterSettings {
     let settings = LoiterSettings {
         radius: section.number("radius", Range::POSITIVE).unwrap_or(default.radius),
         height: section.number("height", Range::POSITIVE).unwrap_or(default.height),
-        sweep: section.number("sweep", Range::above_to(0.0, MOST_SWEEP)).map_or(default.sweep, f64::to_radians),
+        sweep: section
+            .number("sweep", Range::above_to(0.0, MOST_SWEEP))
+            .map_or(default.sweep, f64::to_radians),
         thrust_budget: section.number("thrust_budget", Range::SHARE).unwrap_or(default.thrust_budget),
         yaw: section.choice("yaw", &YAWS).unwrap_or(default.yaw),
         speed_limit: section.number("speed_limit", Range::POSITIVE).unwrap_or(default.speed_limit),

@@ -43,9 +43,13 @@ mod tests {
 
     #[test]
     fn distances_by_hand() {
-        for (a, b, distance) in
-            [("", "", 0), ("", "abc", 3), ("raduis", "radius", 1), ("radus", "radius", 1), ("kitten", "sitting", 3)]
-        {
+        for (a, b, distance) in [
+            ("", "", 0),
+            ("", "abc", 3),
+            ("raduis", "radius", 1),
+            ("radus", "radius", 1),
+            ("kitten", "sitting", 3),
+        ] {
             assert_eq!(edit_distance(a, b), distance, "{a} {b}");
         }
     }

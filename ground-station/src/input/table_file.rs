@@ -10,7 +10,18 @@ use crate::problem::abridged;
 use planner::Target;
 
 const COLUMNS: [&str; 13] = [
-    "id", "name", "lat", "lon", "latitude", "longitude", "east", "north", "alt", "altitude", "radius", "height",
+    "id",
+    "name",
+    "lat",
+    "lon",
+    "latitude",
+    "longitude",
+    "east",
+    "north",
+    "alt",
+    "altitude",
+    "radius",
+    "height",
     "safe_distance",
 ];
 
@@ -19,7 +30,8 @@ type Wrong<'a> = &'a mut dyn FnMut(Option<usize>, &str, String);
 /// Reads the targets; what is wrong goes to `wrong`, row by row.
 pub fn read(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Listed> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+    let mut table =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let Some(columns) = table.headers().ok().and_then(|header| Columns::find(header, wrong)) else {
         return Vec::new();
     };
@@ -29,7 +41,11 @@ pub fn read(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Liste
             Ok(record) => targets.extend(Row { file, columns: &columns, record: &record, frame }.read(wrong)),
             Err(error) => {
                 let line = error.position().map(|position| position.line() as usize);
-                wrong(line, "", format!("not a row of the table ({}): correct it", abridged(&error.to_string())));
+                wrong(
+                    line,
+                    "",
+                    format!("not a row of the table ({}): correct it", abridged(&error.to_string())),
+                );
             }
         }
     }
@@ -56,7 +72,8 @@ impl Columns {
                 wrong(Some(1), name, format!("column \"{name}\" is unknown: did you mean \"{near}\"?"));
             }
         }
-        let find = |names: &[&str]| header.iter().position(|name| names.contains(&name.to_lowercase().as_str()));
+        let find =
+            |names: &[&str]| header.iter().position(|name| names.contains(&name.to_lowercase().as_str()));
         let local = find(&["east"]).zip(find(&["north"]));
         let geographic = find(&["lat", "latitude"]).zip(find(&["lon", "longitude"]));
         let Some((first, second)) = geographic.or(local) else {
@@ -91,7 +108,8 @@ impl Row<'_> {
     fn read(&self, wrong: Wrong<'_>) -> Option<Listed> {
         let columns = self.columns;
         let [first, second] = if columns.geographic { ["lat", "lon"] } else { ["east", "north"] };
-        let ranges = if columns.geographic { [LATITUDES, LONGITUDES] } else { [Range::between(-5e4, 5e4); 2] };
+        let ranges =
+            if columns.geographic { [LATITUDES, LONGITUDES] } else { [Range::between(-5e4, 5e4); 2] };
         // All cells are read before any is missed, so that every wrong one is reported.
         let place = [
             self.number(first, columns.place[0], ranges[0], true, wrong),
@@ -108,7 +126,11 @@ impl Row<'_> {
             match self.frame.place(first_value, second_value) {
                 Ok(position) => position,
                 Err((what, remedy)) => {
-                    wrong(self.line(), first, format!("lat,lon = {first_value},{second_value} {what}: {remedy}"));
+                    wrong(
+                        self.line(),
+                        first,
+                        format!("lat,lon = {first_value},{second_value} {what}: {remedy}"),
+                    );
                     return None;
                 }
             }
@@ -127,7 +149,11 @@ impl Row<'_> {
         }
         let value = cell.parse().ok().filter(|&number| range.contains(number));
         if value.is_none() {
-            let shown = if cell.is_empty() { "is missing".to_owned() } else { format!("= {} is out of range", abridged(cell)) };
+            let shown = if cell.is_empty() {
+                "is missing".to_owned()
+            } else {
+                format!("= {} is out of range", abridged(cell))
+            };
             wrong(self.line(), name, format!("{name} {shown}: give a number {range}"));
         }
         value
@@ -143,14 +169,17 @@ mod tests {
 
     fn read_all(text: &str, frame: Frame) -> (Vec<Listed>, Vec<String>) {
         let mut messages = Vec::new();
-        let mut wrong = |line: Option<usize>, _: &str, message: String| messages.push(format!("{}: {message}", line.unwrap_or(0)));
+        let mut wrong = |line: Option<usize>, _: &str, message: String| {
+            messages.push(format!("{}: {message}", line.unwrap_or(0)))
+        };
         let targets = read("t.csv", text, frame, &mut wrong);
         (targets, messages)
     }
 
     #[test]
     fn local_and_geographic_rows() {
-        let (targets, messages) = read_all("id,east,north,radius\na,1,2,\nb, 3.5 ,-4,2.5\n", Frame { origin: None });
+        let (targets, messages) =
+            read_all("id,east,north,radius\na,1,2,\nb, 3.5 ,-4,2.5\n", Frame { origin: None });
         assert!(messages.is_empty(), "{messages:?}");
         assert_eq!(targets[0].target, Target { name: "a".into(), ..Target::at([1.0, 2.0]) });
         assert_eq!(targets[1].target.radius, Some(2.5));
@@ -160,8 +189,10 @@ mod tests {
 
     #[test]
     fn everything_wrong_is_listed_with_its_line() {
-        let (targets, messages) =
-            read_all("id,lat,lon,raduis,radius\n1,91,-93,1,-2\n2,,-93,,nan\n3,x,-93,,\n4,0,0,,\n5,1\n", FRAME);
+        let (targets, messages) = read_all(
+            "id,lat,lon,raduis,radius\n1,91,-93,1,-2\n2,,-93,,nan\n3,x,-93,,\n4,0,0,,\n5,1\n",
+            FRAME,
+        );
         assert!(targets.is_empty());
         let wanted = [
             "1: column \"raduis\" is unknown: did you mean \"radius\"?",

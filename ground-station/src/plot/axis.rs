@@ -9,7 +9,11 @@ pub fn round_step(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     let steps = [1.0, 2.0, 2.5, 5.0, 10.0];
     // A hair of slack, so that a length that is itself round stays.
-    steps.into_iter().map(|step| step * power).find(|step| *step >= length * (1.0 - 1e-9)).unwrap_or(10.0 * power)
+    steps
+        .into_iter()
+        .map(|step| step * power)
+        .find(|step| *step >= length * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
 }
 
 /// Ticks from `low` to `high`, about `count` of them, at multiples of a round step.
@@ -33,7 +37,11 @@ pub fn tick_label(value: f64, ticks: &[f64]) -> String {
         (scaled - scaled.round()).abs() < 1e-6 * scaled.max(1.0)
     });
     let text = format!("{value:.*}", decimals.unwrap_or(6) as usize);
-    if text.trim_start_matches('-').chars().all(|digit| matches!(digit, '0' | '.')) { "0".into() } else { text }
+    if text.trim_start_matches('-').chars().all(|digit| matches!(digit, '0' | '.')) {
+        "0".into()
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -42,7 +50,9 @@ mod tests {
 
     #[test]
     fn steps_are_round_and_ticks_cover() {
-        for (length, step) in [(0.9, 1.0), (1.0, 1.0), (1.1, 2.0), (2.2, 2.5), (3.0, 5.0), (7.0, 10.0), (0.03, 0.05)] {
+        for (length, step) in
+            [(0.9, 1.0), (1.0, 1.0), (1.1, 2.0), (2.2, 2.5), (3.0, 5.0), (7.0, 10.0), (0.03, 0.05)]
+        {
             assert!((round_step(length) - step).abs() < 1e-12, "{length}");
         }
         assert_eq!(ticks(0.0, 10.0, 5), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
@@ -54,7 +64,10 @@ mod tests {
     #[test]
     fn labels_have_the_decimals_of_the_step() {
         let fine = ticks(0.0, 1.0, 4);
-        assert_eq!(fine.iter().map(|&tick| tick_label(tick, &fine)).collect::<Vec<_>>(), ["0", "0.25", "0.50", "0.75", "1.00"]);
+        assert_eq!(
+            fine.iter().map(|&tick| tick_label(tick, &fine)).collect::<Vec<_>>(),
+            ["0", "0.25", "0.50", "0.75", "1.00"]
+        );
         assert_eq!(tick_label(20.0, &[0.0, 10.0, 20.0]), "20");
     }
 }

@@ -69,8 +69,16 @@ impl Labels {
     /// The middle of a label of the given size beside a point, `gap` px away from it, and marks it as taken.
     pub fn place(&mut self, point: [f64; 2], gap: f64, size: [f64; 2]) -> [f64; 2] {
         // The customary order of cartographers: upper right first.
-        const SIDES: [[f64; 2]; 8] =
-            [[1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
+        const SIDES: [[f64; 2]; 8] = [
+            [1.0, -1.0],
+            [1.0, 1.0],
+            [-1.0, -1.0],
+            [-1.0, 1.0],
+            [1.0, 0.0],
+            [-1.0, 0.0],
+            [0.0, -1.0],
+            [0.0, 1.0],
+        ];
         let mut best = (f64::INFINITY, point);
         for side in SIDES {
             let reach = if side[0] * side[1] == 0.0 { gap } else { gap * std::f64::consts::FRAC_1_SQRT_2 };

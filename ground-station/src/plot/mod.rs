@@ -5,6 +5,7 @@
 //! scripts opens everywhere.
 
 mod axis;
+mod from_plan;
 mod labels;
 mod map;
 mod palette;
@@ -12,5 +13,6 @@ mod path;
 mod profile;
 mod svg;
 
+pub use from_plan::{map_scene, speed, tilt, vehicle_profile};
 pub use map::{MapCircle, MapScene, MapTarget, MapVehicle, map};
 pub use profile::{Band, Limit, Panel, Profile, profile};

@@ -57,7 +57,8 @@ const PANEL: f64 = 150.0;
 const GAP: f64 = 26.0;
 const BOTTOM: f64 = 50.0;
 
-const SMALL: TextStyle = TextStyle { size: 11.0, colour: GREY, anchor: Anchor::Middle, bold: false, halo: false };
+const SMALL: TextStyle =
+    TextStyle { size: 11.0, colour: GREY, anchor: Anchor::Middle, bold: false, halo: false };
 
 /// Draws the profile.
 #[must_use]
@@ -67,6 +68,13 @@ pub fn profile(profile: &Profile) -> String {
     let mut svg = Svg::new(WIDTH, height, &profile.title);
     let heading = TextStyle { size: 16.0, colour: INK, anchor: Anchor::Start, bold: true, halo: false };
     svg.text([LEFT, 26.0], &profile.title, heading);
+    if !profile.loiters.is_empty() {
+        svg.text(
+            [WIDTH - RIGHT, 26.0],
+            "shaded: circling the target named above",
+            TextStyle { anchor: Anchor::End, ..SMALL },
+        );
+    }
     let end = profile.times.last().copied().unwrap_or(0.0).max(1e-3);
     let start = profile.times.first().copied().unwrap_or(0.0).min(end - 1e-3);
     let plotter = Plotter { profile, start, end };
@@ -109,7 +117,8 @@ impl Plotter<'_> {
             svg.polyline(&[[self.x(tick), bottom], [self.x(tick), bottom + 4.0]], Stroke::solid(INK, 1.0));
         }
         let times = self.profile.times.iter();
-        let line: Vec<[f64; 2]> = times.zip(&panel.values).map(|(&time, &value)| [self.x(time), y(value)]).collect();
+        let line: Vec<[f64; 2]> =
+            times.zip(&panel.values).map(|(&time, &value)| [self.x(time), y(value)]).collect();
         svg.polyline(&simplified(&line, 0.1), Stroke::solid(colour(self.profile.vehicle), 1.6));
         limits(svg, panel, y, right);
         svg.polyline(&[[left, top], [left, bottom], [right, bottom]], Stroke::solid(INK, 1.0));
@@ -117,21 +126,18 @@ impl Plotter<'_> {
         svg.text_upwards([22.0, (top + bottom) / 2.0], &panel.title, style);
     }
 
-    /// The loiters as shaded stretches; above the first panel stands what is circled.
+    /// The loiters as shaded stretches; above the first panel stands what is circled, in two rows where it is crowded.
     fn bands(&self, svg: &mut Svg, top: f64, labelled: bool) {
-        let mut free_from = f64::NEG_INFINITY;
+        let mut free_from = [f64::NEG_INFINITY; 2];
         for band in &self.profile.loiters {
             let [from, to] = band.span.map(|time| self.x(time));
             svg.rectangle([from, top], [(to - from).max(0.0), PANEL], "#000000", 0.06);
             let (middle, half) = ((from + to) / 2.0, text_width(&band.label, SMALL.size) / 2.0);
-            if labelled && middle - half > free_from {
-                svg.text([middle, top - 6.0], &band.label, SMALL);
-                free_from = middle + half + 2.0;
+            let row = free_from.iter().position(|&free| middle - half > free).filter(|_| labelled);
+            if let Some(row) = row {
+                svg.text([middle, top - 6.0 - 13.0 * row as f64], &band.label, SMALL);
+                free_from[row] = middle + half + 3.0;
             }
-        }
-        if labelled && !self.profile.loiters.is_empty() {
-            let caption = TextStyle { anchor: Anchor::Start, ..SMALL };
-            svg.text([LEFT, top - 20.0], "shaded: circling target", caption);
         }
     }
 }
@@ -187,7 +193,8 @@ mod tests {
 
     #[test]
     fn a_vehicle_that_never_flew_has_a_picture_too() {
-        let empty = Profile { title: String::new(), vehicle: 3, times: vec![], panels: vec![], loiters: vec![] };
+        let empty =
+            Profile { title: String::new(), vehicle: 3, times: vec![], panels: vec![], loiters: vec![] };
         assert!(profile(&empty).ends_with("</svg>\n"));
     }
 }

@@ -114,8 +114,11 @@ impl Svg {
     /// A circle with a rim.
     pub fn ring(&mut self, [x, y]: [f64; 2], radius: f64, stroke: Stroke) {
         let (x, y, radius) = (number(x), number(y), number(radius));
-        let _ =
-            writeln!(self.text, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"none\"{}/>", attributes(stroke));
+        let _ = writeln!(
+            self.text,
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"none\"{}/>",
+            attributes(stroke)
+        );
     }
 
     /// A filled circle.
@@ -216,7 +219,9 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_finite() {
-        for (value, text) in [(1.0, "1"), (-0.001, "0"), (2.345, "2.35"), (f64::NAN, "0"), (1e3, "1000"), (0.5, "0.5")] {
+        for (value, text) in
+            [(1.0, "1"), (-0.001, "0"), (2.345, "2.35"), (f64::NAN, "0"), (1e3, "1000"), (0.5, "0.5")]
+        {
             assert_eq!(number(value), text);
         }
     }

@@ -1,8 +1,9 @@
 //! From a plan of the planner to the document.
 
 use super::{
-    ApproachEntry, CandidateEntry, CertificateEntry, CircleEntry, LegEntry, LoiterEntry, MissEntry, MissionEntry,
-    OriginEntry, OutcomeEntry, PlanDocument, TargetEntry, TeamEntry, TransitionEntry, VERSION, VehicleEntry,
+    ApproachEntry, CandidateEntry, CertificateEntry, CircleEntry, LegEntry, LoiterEntry, MissEntry,
+    MissionEntry, OriginEntry, OutcomeEntry, PlanDocument, TargetEntry, TeamEntry, TransitionEntry, VERSION,
+    VehicleEntry,
 };
 use crate::export::columns::{by_column, control_columns, state_columns};
 use crate::export::folder::FORMAT;
@@ -20,7 +21,12 @@ impl PlanDocument {
             version: VERSION,
             mission: mission_entry(file),
             targets: target_entries(file),
-            circles: plan.circles.iter().enumerate().map(|(index, circle)| circle_entry(index, circle)).collect(),
+            circles: plan
+                .circles
+                .iter()
+                .enumerate()
+                .map(|(index, circle)| circle_entry(index, circle))
+                .collect(),
             team: team_entry(plan),
             certificate: certificate_entry(plan),
             closest_approach: plan.closest_approach.map(|approach| ApproachEntry {
@@ -29,7 +35,12 @@ impl PlanDocument {
                 distance_m: approach.distance,
             }),
             warnings: warnings.to_vec(),
-            vehicles: plan.vehicles.iter().enumerate().map(|(index, vehicle)| vehicle_entry(index, vehicle)).collect(),
+            vehicles: plan
+                .vehicles
+                .iter()
+                .enumerate()
+                .map(|(index, vehicle)| vehicle_entry(index, vehicle))
+                .collect(),
         }
     }
 

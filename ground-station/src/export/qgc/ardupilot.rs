@@ -86,9 +86,10 @@ fn common_notes(tasks: &[CircleTask], flown: &[Turns], first_height: f64) -> Vec
         "ArduCopter stops at every circle and turns at CIRCLE_RATE (20 deg/s unless changed): about {expected:.0} s on the \
          circles instead of the planned {planned:.0} s; streaming the trajectory in GUIDED mode flies the plan as it is"
     )];
-    let short = tasks.iter().zip(flown).find(|(task, turns)| {
-        360.0 * turns.count - LOST_VIEW < task.sweep.to_degrees().min(360.0) - 0.5
-    });
+    let short = tasks
+        .iter()
+        .zip(flown)
+        .find(|(task, turns)| 360.0 * turns.count - LOST_VIEW < task.sweep.to_degrees().min(360.0) - 0.5);
     if let Some((task, turns)) = short {
         notes.push(format!(
             "a LOITER_TURNS item of {:.2} turn(s) shows about {:.0} deg of a target, not the {:.0} deg planned: whole turns \

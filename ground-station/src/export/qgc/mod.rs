@@ -19,8 +19,6 @@ use planner::Direction;
 pub struct VehicleMission {
     /// Where it starts and lands: east, north (m).
     pub pad: [f64; 2],
-    /// Height at which it leaves and returns (m).
-    pub pad_height: f64,
     /// Its circles in the order of its route.
     pub circles: Vec<CircleTask>,
     /// Greatest speed on the way back (m/s).
@@ -95,7 +93,8 @@ pub fn qgc_mission(vehicle: &VehicleMission, autopilot: Autopilot, origin: &Orig
     }
     let [latitude, longitude] = place.geographic(vehicle.pad);
     let speed = vehicle.circles.iter().map(|task| task.transit_speed).fold(vehicle.return_speed, f64::max);
-    let mission = Mission::new(firmware, [latitude, longitude, origin.altitude], tenths(speed), numbered(items));
+    let mission =
+        Mission::new(firmware, [latitude, longitude, origin.altitude], tenths(speed), numbered(items));
     QgcMission { plan: PlanFile::new(mission, fence), notes }
 }
 

@@ -26,7 +26,7 @@ fn vehicle(circles: Vec<CircleTask>) -> VehicleMission {
         KeepOut { centre: [10.0, 0.0], radius: 1.5, room: 1.5 },
         KeepOut { centre: [20.0, 0.0], radius: 1.5, room: 0.5 },
     ];
-    VehicleMission { pad: [3.0, 0.0], pad_height: 1.5, circles, return_speed: 9.0, keep_out }
+    VehicleMission { pad: [3.0, 0.0], circles, return_speed: 9.0, keep_out }
 }
 
 /// What a loader requires: returns (command, params) of every item, or what is wrong.
@@ -38,7 +38,10 @@ fn load(text: &str) -> Result<Vec<(u64, Vec<Option<f64>>)>, String> {
     need(mission["version"] == 2, "mission version")?;
     need(mission["firmwareType"] == 3 || mission["firmwareType"] == 12, "firmware")?;
     need(mission["vehicleType"] == 2, "vehicle type")?;
-    need(mission["plannedHomePosition"].as_array().is_some_and(|home| home.len() == 3), "home of three numbers")?;
+    need(
+        mission["plannedHomePosition"].as_array().is_some_and(|home| home.len() == 3),
+        "home of three numbers",
+    )?;
     let fence = &file["geoFence"];
     need(fence["version"] == 2 && fence["circles"].is_array() && fence["polygons"].is_array(), "fence")?;
     for circle in fence["circles"].as_array().into_iter().flatten() {
@@ -74,13 +77,23 @@ fn ardupilot_gets_turns_with_the_sign_of_the_direction() -> Result<(), Box<dyn s
     let items = load(&mission.plan.to_text()?)?;
     let commands: Vec<u64> = items.iter().map(|item| item.0).collect();
     assert_eq!(commands, [22, 178, 18, 18, 18, 16, 21]);
-    let turns: Vec<[f64; 2]> =
-        items[2..5].iter().map(|item| [item.1[0].unwrap_or(f64::NAN), item.1[2].unwrap_or(f64::NAN)]).collect();
+    let turns: Vec<[f64; 2]> = items[2..5]
+        .iter()
+        .map(|item| [item.1[0].unwrap_or(f64::NAN), item.1[2].unwrap_or(f64::NAN)])
+        .collect();
     assert_eq!(turns, [[1.0, -3.0], [1.0, 3.0], [0.5, 300.0]]);
     assert_eq!(items[1].1[..3], [Some(1.0), Some(9.0), Some(-1.0)]);
-    assert!(mission.notes[0].starts_with("target 3: a LOITER_TURNS item takes whole metres"), "{:?}", mission.notes);
+    assert!(
+        mission.notes[0].starts_with("target 3: a LOITER_TURNS item takes whole metres"),
+        "{:?}",
+        mission.notes
+    );
     assert!(mission.notes.iter().any(|note| note.contains("shows about 340 deg")), "{:?}", mission.notes);
-    assert!(mission.notes.iter().any(|note| note.starts_with("1 keep-out circle(s) are not")), "{:?}", mission.notes);
+    assert!(
+        mission.notes.iter().any(|note| note.starts_with("1 keep-out circle(s) are not")),
+        "{:?}",
+        mission.notes
+    );
     assert_eq!(mission.plan.geo_fence.circles.len(), 1);
     Ok(())
 }

@@ -1,10 +1,15 @@
 //! The map of a plan: targets, circles, tours and trajectories in equal axes, with a legend beside it.
 
-use super::axis::{round_step, tick_label, ticks};
+mod legend;
+mod view;
+
+use super::axis::{tick_label, ticks};
 use super::labels::{Area, Labels};
 use super::palette::{GREY, GRID, INK, colour};
 use super::path::simplified;
 use super::svg::{Anchor, Stroke, Svg, TextStyle, text_width};
+use legend::legend;
+use view::{LEFT, TOP, View};
 
 /// What is drawn. Positions are east, north (m).
 #[derive(Debug, Clone, PartialEq)]
@@ -56,18 +61,13 @@ pub struct MapCircle {
     pub entry: f64,
 }
 
-const LEFT: f64 = 64.0;
-const TOP: f64 = 46.0;
 const BOTTOM: f64 = 48.0;
 const LEGEND: f64 = 236.0;
-/// Greatest width and height of the map itself.
-const PAPER: [f64; 2] = [760.0, 760.0];
 /// Room for the legend's lines.
 const LEAST_HEIGHT: f64 = 430.0;
-/// A circle smaller than this (px) is drawn as a symbol of this radius, and the legend says so.
-const LEAST_RADIUS: f64 = 5.0;
 
-const SMALL: TextStyle = TextStyle { size: 11.0, colour: GREY, anchor: Anchor::Middle, bold: false, halo: false };
+const SMALL: TextStyle =
+    TextStyle { size: 11.0, colour: GREY, anchor: Anchor::Middle, bold: false, halo: false };
 
 /// Draws the map.
 #[must_use]
@@ -102,67 +102,17 @@ pub fn map(scene: &MapScene) -> String {
     svg.finish()
 }
 
-/// From metres to paper, with equal axes.
-struct View {
-    low: [f64; 2],
-    /// px per metre
-    scale: f64,
-    /// px
-    size: [f64; 2],
-}
-
-impl View {
-    fn of(scene: &MapScene) -> Self {
-        let mut low = scene.depot;
-        let mut high = scene.depot;
-        let mut include = |[east, north]: [f64; 2], reach: f64| {
-            low = [low[0].min(east - reach), low[1].min(north - reach)];
-            high = [high[0].max(east + reach), high[1].max(north + reach)];
-        };
-        scene.targets.iter().for_each(|target| include(target.position, target.safe_distance));
-        for vehicle in &scene.vehicles {
-            include(vehicle.pad, 0.0);
-            vehicle.track.iter().for_each(|&point| include(point, 0.0));
-            vehicle.circles.iter().for_each(|circle| include(circle.centre, circle.radius));
-        }
-        let span = [high[0] - low[0], high[1] - low[1]];
-        let margin = 0.04 * span[0].max(span[1]).max(1.0);
-        let span = span.map(|side| side + 2.0 * margin);
-        let scale = (PAPER[0] / span[0]).min(PAPER[1] / span[1]);
-        // A sliver of a map would leave no room for its axes.
-        let size = span.map(|side| (side * scale).max(160.0));
-        let spare = [0, 1].map(|axis| (size[axis] / scale - span[axis]) / 2.0);
-        Self { low: [low[0] - margin - spare[0], low[1] - margin - spare[1]], scale, size }
-    }
-
-    fn at(&self, [east, north]: [f64; 2]) -> [f64; 2] {
-        [LEFT + self.scale * (east - self.low[0]), TOP + self.size[1] - self.scale * (north - self.low[1])]
-    }
-
-    fn paper(&self) -> Area {
-        Area { low: [LEFT, TOP], high: [LEFT + self.size[0], TOP + self.size[1]] }
-    }
-
-    fn high(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.low[axis] + self.size[axis] / self.scale)
-    }
-
-    fn radius(&self, circle: &MapCircle) -> f64 {
-        (self.scale * circle.radius).max(LEAST_RADIUS)
-    }
-}
-
 fn axes(svg: &mut Svg, view: &View) {
     let Area { low: [left, top], high: [right, bottom] } = view.paper();
     let high = view.high();
-    let east_ticks = ticks(view.low[0], high[0], 8);
+    let east_ticks = ticks(view.low()[0], high[0], 8);
     for &tick in &east_ticks {
         let [x, _] = view.at([tick, 0.0]);
         svg.polyline(&[[x, top], [x, bottom]], Stroke::solid(GRID, 1.0));
         svg.polyline(&[[x, bottom], [x, bottom + 4.0]], Stroke::solid(INK, 1.0));
         svg.text([x, bottom + 17.0], &tick_label(tick, &east_ticks), SMALL);
     }
-    let north_ticks = ticks(view.low[1], high[1], 8);
+    let north_ticks = ticks(view.low()[1], high[1], 8);
     for &tick in &north_ticks {
         let [_, y] = view.at([0.0, tick]);
         svg.polyline(&[[left, y], [right, y]], Stroke::solid(GRID, 1.0));
@@ -192,11 +142,11 @@ fn tour(svg: &mut Svg, view: &View, vehicle: &MapVehicle, index: usize) {
 fn direction(svg: &mut Svg, view: &View, circle: &MapCircle, index: usize) {
     let centre = view.at(circle.centre);
     let radius = view.radius(circle);
-    if view.scale * circle.radius < LEAST_RADIUS {
+    if view.is_symbol(circle) {
         svg.disc(centre, radius, "#ffffff", 1.0);
         svg.ring(centre, radius, Stroke::solid(colour(index), 1.3));
     }
-    let length = (0.45 * radius).clamp(4.5, 9.0);
+    let length = (0.45 * radius).clamp(5.5, 9.0);
     let turns: &[f64] = if radius > 14.0 { &[0.25, 0.75] } else { &[0.5] };
     for turn in turns {
         let angle = circle.entry + f64::from(circle.direction) * turn * std::f64::consts::TAU;
@@ -247,105 +197,12 @@ fn targets(svg: &mut Svg, view: &View, scene: &MapScene, labels: &mut Labels) {
     for target in &scene.targets {
         let at = view.at(target.position);
         let around = scene.vehicles.iter().flat_map(|vehicle| &vehicle.circles);
-        let symbol = around.filter(|circle| view.scale * circle.radius < LEAST_RADIUS);
-        let gap = if symbol.count() > 0 { LEAST_RADIUS + 3.0 } else { dot + 2.0 };
+        let symbol = around.filter(|circle| view.is_symbol(circle));
+        let gap = if symbol.count() > 0 { 8.5 } else { dot + 2.0 };
         let middle = labels.place(at, gap, [text_width(&target.label, size), size]);
         let style = TextStyle { size, colour: INK, bold: !crowded, halo: true, anchor: Anchor::Middle };
         svg.text([middle[0], middle[1] + 0.36 * size], &target.label, style);
     }
-}
-
-fn legend(svg: &mut Svg, view: &View, scene: &MapScene) {
-    let mut pen = Pen { svg, x: LEFT + view.size[0] + 22.0, y: TOP + 10.0 };
-    north_arrow(pen.svg, [LEFT + view.size[0] + LEGEND - 34.0, TOP + 24.0]);
-    pen.heading("Vehicles");
-    for (index, vehicle) in scene.vehicles.iter().enumerate() {
-        let y = pen.y - 4.0;
-        pen.svg.polyline(&[[pen.x, y], [pen.x + 24.0, y]], Stroke::solid(colour(index), 2.4));
-        pen.entry(&vehicle.caption);
-    }
-    pen.y += 12.0;
-    pen.heading("Symbols");
-    symbols(&mut pen, view, scene);
-    pen.y += 14.0;
-    scale_bar(&mut pen, view);
-}
-
-/// Writes the legend line by line.
-struct Pen<'a> {
-    svg: &'a mut Svg,
-    x: f64,
-    y: f64,
-}
-
-impl Pen<'_> {
-    fn heading(&mut self, text: &str) {
-        let style = TextStyle { size: 12.0, colour: INK, anchor: Anchor::Start, bold: true, halo: false };
-        self.svg.text([self.x, self.y], text, style);
-        self.y += 20.0;
-    }
-
-    fn entry(&mut self, text: &str) {
-        let style = TextStyle { colour: INK, anchor: Anchor::Start, ..SMALL };
-        self.svg.text([self.x + 34.0, self.y], text, style);
-        self.y += 18.0;
-    }
-
-    fn middle(&self) -> [f64; 2] {
-        [self.x + 12.0, self.y - 4.0]
-    }
-}
-
-fn symbols(pen: &mut Pen<'_>, view: &View, scene: &MapScene) {
-    let line = |pen: &Pen<'_>| [[pen.x, pen.y - 4.0], [pen.x + 24.0, pen.y - 4.0]];
-    let (trajectory, straight) = (line(pen), Stroke::solid(GREY, 1.7));
-    pen.svg.polyline(&trajectory, straight);
-    pen.entry("trajectory");
-    let dashes = line(pen);
-    pen.svg.polyline(&dashes, Stroke::solid(GREY, 1.0).dashed(4.0, 4.0));
-    pen.entry("tour");
-    let middle = pen.middle();
-    pen.svg.ring(middle, 6.0, Stroke::solid(GREY, 1.5));
-    pen.svg.polygon(&arrow_head(middle, 6.0, 0.0, 1, 6.5), GREY);
-    let mut circles = scene.vehicles.iter().flat_map(|vehicle| &vehicle.circles);
-    let symbolic = circles.any(|circle| view.scale * circle.radius < LEAST_RADIUS);
-    pen.entry(if symbolic { "circle (not to scale), direction" } else { "circle and its direction" });
-    let middle = pen.middle();
-    if view.scale * scene.targets.iter().map(|target| target.safe_distance).fold(0.0, f64::max) > 3.0 {
-        pen.svg.disc(middle, 7.5, "#000000", 0.1);
-        pen.svg.disc(middle, 2.6, INK, 1.0);
-        pen.entry("target, safe distance");
-    } else {
-        pen.svg.disc(middle, 2.0, INK, 1.0);
-        pen.entry("target");
-    }
-    let middle = pen.middle();
-    depot_symbol(pen.svg, middle);
-    pen.entry("depot");
-    let middle = pen.middle();
-    pen.svg.ring(middle, 3.5, Stroke::solid(GREY, 2.0));
-    pen.entry("pad of a vehicle");
-}
-
-fn scale_bar(pen: &mut Pen<'_>, view: &View) {
-    let length = round_step(60.0 / view.scale);
-    let (from, to) = (pen.x, pen.x + view.scale * length);
-    let y = pen.y;
-    let half = (from + to) / 2.0;
-    pen.svg.polyline(&[[from, y], [to, y]], Stroke::solid(INK, 1.5));
-    for x in [from, half, to] {
-        pen.svg.polyline(&[[x, y - 4.0], [x, y + 4.0]], Stroke::solid(INK, 1.5));
-    }
-    let text = if length < 1000.0 { format!("{length} m") } else { format!("{} km", length / 1000.0) };
-    pen.svg.text([half, y + 18.0], &text, TextStyle { colour: INK, ..SMALL });
-}
-
-fn north_arrow(svg: &mut Svg, [x, y]: [f64; 2]) {
-    svg.polygon(&[[x, y - 16.0], [x + 6.5, y + 8.0], [x, y + 3.0]], INK);
-    let outline = [[x, y - 16.0], [x - 6.5, y + 8.0], [x, y + 3.0], [x, y - 16.0]];
-    svg.polyline(&outline, Stroke::solid(INK, 1.0));
-    let style = TextStyle { size: 12.0, colour: INK, anchor: Anchor::Middle, bold: true, halo: false };
-    svg.text([x, y + 22.0], "N", style);
 }
 
 #[cfg(test)]
@@ -357,7 +214,8 @@ mod tests {
     }
 
     fn scene(spread: f64) -> MapScene {
-        let target = |number: usize, position| MapTarget { label: number.to_string(), position, safe_distance: 1.5 };
+        let target =
+            |number: usize, position| MapTarget { label: number.to_string(), position, safe_distance: 1.5 };
         MapScene {
             title: "field".into(),
             depot: [0.0, 0.0],
@@ -365,7 +223,12 @@ mod tests {
             vehicles: vec![MapVehicle {
                 pad: [0.0, 0.0],
                 circles: vec![circle([spread, 0.5 * spread]), circle([0.2 * spread, spread])],
-                track: vec![[0.0, 0.0], [spread, 0.5 * spread - 3.0], [0.2 * spread, spread - 3.0], [0.0, 0.0]],
+                track: vec![
+                    [0.0, 0.0],
+                    [spread, 0.5 * spread - 3.0],
+                    [0.2 * spread, spread - 3.0],
+                    [0.0, 0.0],
+                ],
                 caption: "vehicle 1".into(),
             }],
         }
@@ -387,7 +250,8 @@ mod tests {
     #[test]
     fn the_parts_are_there() {
         let near = map(&scene(40.0));
-        for part in [">1<", ">2<", ">depot<", ">vehicle 1<", ">east (m)<", ">N<", ">5 m<", "stroke-dasharray"] {
+        for part in [">1<", ">2<", ">depot<", ">vehicle 1<", ">east (m)<", ">N<", ">5 m<", "stroke-dasharray"]
+        {
             assert!(near.contains(part), "{part}");
         }
         assert!(near.contains("circle and its direction"));

@@ -1,0 +1,150 @@
+//! Everything that a plan is written as, in memory.
+
+use crate::export::folder::OutputFile;
+use crate::export::plan_json::PlanDocument;
+use crate::export::qgc::{CircleTask, KeepOut, VehicleMission, qgc_mission};
+use crate::export::{members, trajectory_csv};
+use crate::failure::Failure;
+use crate::input::MissionFile;
+use crate::plot::{map, map_scene, profile, vehicle_profile};
+use crate::report::warning_lines;
+use planner::{Plan, Sample, VehiclePlan};
+
+/// The files of a plan and what the operator should know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outputs {
+    /// The files, `plan.json` first.
+    pub files: Vec<OutputFile>,
+    /// What the operator should know, in plain words; also in `plan.json`.
+    pub warnings: Vec<String>,
+}
+
+/// Samples per second of the pictures: switches of thrust should look like switches.
+const PICTURE_RATE: f64 = 50.0;
+
+/// All files of a plan, trajectories sampled at `rate` (Hz).
+///
+/// # Errors
+///
+/// [`Failure::Format`] if a file could not be put into its format, which finite data never causes.
+pub fn outputs(file: &MissionFile, plan: &Plan, rate: f64) -> Result<Outputs, Failure> {
+    let mission = &file.mission;
+    let mut warnings = warning_lines(plan);
+    let mut notes = Notes::default();
+    let mut files = Vec::new();
+    let mut tracks = Vec::new();
+    for index in 0..plan.vehicles.len() {
+        let number = index + 1;
+        let samples = plan.samples(mission, index, rate);
+        files.push(OutputFile {
+            name: format!("vehicle-{number}.csv"),
+            content: trajectory_csv(&samples, &plan.circles),
+        });
+        let samples = plan.samples(mission, index, PICTURE_RATE);
+        let picture = profile(&vehicle_profile(file, plan, index, &samples));
+        files.push(OutputFile { name: format!("profile-{number}.svg"), content: picture });
+        files.extend(autopilot_mission(file, plan, index, &mut notes)?);
+        tracks.push(samples);
+    }
+    warnings.extend(notes.lines());
+    if file.origin.is_none() {
+        warnings.push(
+            "no vehicle-<i>.plan was written: autopilot missions need latitude and longitude, and the mission has no \
+             origin; add origin = { latitude = .., longitude = .., altitude = .. }"
+                .to_owned(),
+        );
+    }
+    let document =
+        PlanDocument::new(file, plan, &warnings).to_text().map_err(|source| Failure::Format { source })?;
+    files.insert(0, OutputFile { name: "plan.json".into(), content: document });
+    files.insert(1, OutputFile { name: "map.svg".into(), content: map(&map_scene(file, plan, &tracks)) });
+    Ok(Outputs { files, warnings })
+}
+
+/// The `.plan` file of a vehicle; none without an origin, and none for a vehicle that stays at the depot.
+fn autopilot_mission(
+    file: &MissionFile,
+    plan: &Plan,
+    index: usize,
+    notes: &mut Notes,
+) -> Result<Option<OutputFile>, Failure> {
+    let vehicle = plan.vehicles.get(index).filter(|vehicle| !vehicle.legs.is_empty());
+    let Some((vehicle, origin)) = vehicle.zip(file.origin) else { return Ok(None) };
+    let mission = qgc_mission(&vehicle_mission(file, plan, vehicle), file.autopilot, &origin);
+    let name = format!("vehicle-{}.plan", index + 1);
+    notes.add(&name, mission.notes);
+    let content = mission.plan.to_text().map_err(|source| Failure::Format { source })?;
+    Ok(Some(OutputFile { name, content }))
+}
+
+/// Notes on files, each said once with the files that it is about.
+#[derive(Debug, Default)]
+struct Notes {
+    said: Vec<(String, Vec<String>)>,
+}
+
+impl Notes {
+    fn add(&mut self, file: &str, notes: Vec<String>) {
+        for note in notes {
+            match self.said.iter_mut().find(|(said, _)| *said == note) {
+                Some((_, files)) => files.push(file.to_owned()),
+                None => self.said.push((note, vec![file.to_owned()])),
+            }
+        }
+    }
+
+    fn lines(&self) -> impl Iterator<Item = String> {
+        self.said.iter().map(|(note, files)| format!("{}: {note}", files.join(", ")))
+    }
+}
+
+fn vehicle_mission(file: &MissionFile, plan: &Plan, vehicle: &VehiclePlan) -> VehicleMission {
+    let tasks = vehicle.legs.iter().filter_map(|leg| {
+        let loiter = leg.loiter?;
+        let circle = plan.circles.get(loiter.circle)?;
+        Some(CircleTask {
+            name: members(circle),
+            centre: circle.centre,
+            radius: circle.radius,
+            height: circle.height,
+            sweep: circle.sweep,
+            entry_angle: loiter.entry.angle,
+            direction: loiter.entry.direction,
+            speed: circle.speed,
+            transit_speed: leg.transition.max_speed,
+        })
+    });
+    VehicleMission {
+        pad: [vehicle.pad[0], vehicle.pad[1]],
+        circles: tasks.collect(),
+        return_speed: vehicle.legs.last().map_or(0.0, |leg| leg.transition.max_speed),
+        keep_out: keep_out(file, plan),
+    }
+}
+
+/// The safe distances of the targets, and how much room the circles leave around them.
+fn keep_out(file: &MissionFile, plan: &Plan) -> Vec<KeepOut> {
+    let common = file.mission.transition.safe_distance;
+    let circle_of = |target: &planner::Target| {
+        let radius = target.safe_distance.unwrap_or(common);
+        let room = plan.circles.iter().map(|circle| {
+            let distance =
+                (circle.centre[0] - target.position[0]).hypot(circle.centre[1] - target.position[1]);
+            (circle.radius - distance).abs() - radius
+        });
+        KeepOut { centre: target.position, radius, room: room.fold(f64::INFINITY, f64::min) }
+    };
+    file.mission.targets.iter().map(circle_of).collect()
+}
+
+/// The greatest speed (m/s) and tilt (rad) of a flight.
+#[must_use]
+pub fn extremes(vehicle: &VehiclePlan, samples: &[Sample]) -> [f64; 2] {
+    let speeds = samples.iter().map(crate::plot::speed);
+    let tilts = samples.iter().map(crate::plot::tilt);
+    let transitions = || vehicle.legs.iter().map(|leg| &leg.transition);
+    [
+        speeds.chain(transitions().map(|transition| transition.max_speed)).fold(0.0, f64::max),
+        tilts.chain(transitions().map(|transition| transition.max_tilt)).fold(0.0, f64::max),
+    ]
+}

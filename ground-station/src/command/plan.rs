@@ -1,0 +1,118 @@
+//! `plan`: from a mission file to a folder.
+
+use super::outputs::{extremes, outputs};
+use crate::export::folder;
+use crate::export::members;
+use crate::failure::Failure;
+use crate::input::{self, MissionFile};
+use crate::report::{self, VehicleRow, worst_of};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use planner::{Miss, Options, Plan, Tolerances, Transcription, VehiclePlan};
+use std::path::PathBuf;
+
+/// What is asked of the command.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanRequest {
+    /// The mission file; the built-in field mission if there is none.
+    pub file: Option<PathBuf>,
+    /// The folder that is written.
+    pub out: PathBuf,
+    /// Replaces a folder that is not ours.
+    pub force: bool,
+    /// Samples per second of the trajectory tables (Hz).
+    pub rate: f64,
+    /// Checks the plan with an independent integrator before anything is written.
+    pub verify: bool,
+    /// Instead of the mission's transcription.
+    pub transcription: Option<Transcription>,
+    /// No progress bar.
+    pub quiet: bool,
+}
+
+/// Plans, checks and writes; returns the text to be printed.
+///
+/// # Errors
+///
+/// [`Failure`]; nothing is written then.
+pub fn plan(request: &PlanRequest) -> Result<String, Failure> {
+    let mut file = match &request.file {
+        Some(path) => input::read(path)?,
+        None => input::built_in()?,
+    };
+    if let Some(transcription) = request.transcription {
+        file.mission.transition.transcription = transcription;
+    }
+    folder::check(&request.out, request.force)?;
+    let plan = search(&file, request.quiet)?;
+    let mut text = summary(&file, &plan);
+    if request.verify {
+        let verification = plan.verify(&file.mission, &Tolerances::default());
+        text.push('\n');
+        text.push_str(&report::verification_text(&verification));
+        if !verification.passed() {
+            return Err(Failure::Verification { report: text, failures: verification.failures });
+        }
+        text.push_str("verification passed\n");
+    }
+    let outputs = outputs(&file, &plan, request.rate)?;
+    folder::write(&request.out, &outputs.files, request.force)?;
+    if !outputs.warnings.is_empty() {
+        text.push('\n');
+    }
+    for warning in &outputs.warnings {
+        text.push_str(&format!("warning: {warning}\n"));
+    }
+    text.push_str(&format!("\nwrote {}:\n", request.out.display()));
+    for file in &outputs.files {
+        text.push_str(&format!("  {}\n", file.name));
+    }
+    Ok(text)
+}
+
+/// Runs the planner behind a progress bar on the standard error, which hides itself where that is no terminal.
+fn search(file: &MissionFile, quiet: bool) -> Result<Plan, Failure> {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(0), target);
+    let template = "planning {bar:40} {pos}/{len} candidate transitions, {elapsed} gone, {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    let progress = |progress: planner::Progress| {
+        bar.set_length(progress.total as u64);
+        bar.set_position(progress.done as u64);
+    };
+    let mut options = Options::default();
+    options.progress = Some(&progress);
+    let outcome = planner::plan(&file.mission, &options);
+    bar.finish_and_clear();
+    outcome.map_err(|source| Failure::of_planner(&file.file, source))
+}
+
+fn summary(file: &MissionFile, plan: &Plan) -> String {
+    let row = |(index, vehicle): (usize, &VehiclePlan)| row(file, plan, index, vehicle);
+    let rows: Vec<VehicleRow> = plan.vehicles.iter().enumerate().map(row).collect();
+    let mut text = report::vehicle_table(&rows);
+    text.push('\n');
+    for line in report::certificate_lines(plan) {
+        text.push_str(&format!("{line}\n"));
+    }
+    text
+}
+
+fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> VehicleRow {
+    /// Often enough to see the greatest tilt on a circle.
+    const RATE: f64 = 20.0;
+    let [top_speed, top_tilt] = extremes(vehicle, &plan.samples(&file.mission, index, RATE));
+    let circles = || vehicle.route.iter().filter_map(|&circle| plan.circles.get(circle));
+    VehicleRow {
+        targets: circles().map(members).collect::<Vec<_>>().join(" "),
+        count: circles().map(|circle| circle.members.len()).sum(),
+        length: vehicle.length(),
+        transit: vehicle.transition_time(),
+        loiters: vehicle.loiter_time(),
+        total: vehicle.duration(),
+        top_speed,
+        top_tilt,
+        miss: vehicle.legs.iter().fold(Miss::default(), |worst, leg| worst_of(worst, leg.transition.miss)),
+    }
+}

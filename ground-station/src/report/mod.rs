@@ -1,0 +1,233 @@
+//! What is printed when a plan is done: a table of the vehicles, totals, the certificate, warnings, files.
+
+mod table;
+mod warnings;
+
+pub use table::Table;
+pub use warnings::warning_lines;
+
+use planner::{Miss, Plan, Verification};
+
+/// A vehicle's line of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VehicleRow {
+    /// The targets in the order of its route: "3 1 4+5".
+    pub targets: String,
+    /// How many they are.
+    pub count: usize,
+    /// Metres.
+    pub length: f64,
+    /// Seconds in transitions.
+    pub transit: f64,
+    /// Seconds in loiters.
+    pub loiters: f64,
+    /// Seconds from take-off to the return.
+    pub total: f64,
+    /// Greatest speed (m/s).
+    pub top_speed: f64,
+    /// Greatest tilt (rad).
+    pub top_tilt: f64,
+    /// Worst integrated miss over its legs.
+    pub miss: Miss,
+}
+
+/// The table of the vehicles, with the team's line at the end.
+#[must_use]
+pub fn vehicle_table(rows: &[VehicleRow]) -> String {
+    let mut table = Table::new(&[
+        "vehicle",
+        "targets",
+        "length",
+        "in transit",
+        "in loiters",
+        "total",
+        "top speed",
+        "top tilt",
+        "worst integrated miss",
+    ]);
+    for (index, row) in rows.iter().enumerate() {
+        table.push(cells((index + 1).to_string(), row));
+    }
+    table.push(cells("team".to_owned(), &team_row(rows)));
+    table.render()
+}
+
+fn cells(name: String, row: &VehicleRow) -> Vec<String> {
+    if row.count == 0 {
+        return vec![name, "none: stays at the depot".to_owned()];
+    }
+    vec![
+        name,
+        if row.targets.is_empty() {
+            row.count.to_string()
+        } else {
+            format!("{}: {}", row.count, row.targets)
+        },
+        format!("{:.1} m", row.length),
+        format!("{:.2} s", row.transit),
+        format!("{:.2} s", row.loiters),
+        format!("{:.2} s", row.total),
+        format!("{:.2} m/s", row.top_speed),
+        format!("{:.1} deg", row.top_tilt.to_degrees()),
+        miss_text(&row.miss),
+    ]
+}
+
+/// Sums over the team; for speed, tilt and miss the greatest.
+fn team_row(rows: &[VehicleRow]) -> VehicleRow {
+    let sum = |of: fn(&VehicleRow) -> f64| rows.iter().map(of).sum();
+    let most = |of: fn(&VehicleRow) -> f64| rows.iter().map(of).fold(0.0, f64::max);
+    VehicleRow {
+        targets: String::new(),
+        count: rows.iter().map(|row| row.count).sum(),
+        length: sum(|row| row.length),
+        transit: sum(|row| row.transit),
+        loiters: sum(|row| row.loiters),
+        total: sum(|row| row.total),
+        top_speed: most(|row| row.top_speed),
+        top_tilt: most(|row| row.top_tilt),
+        miss: rows.iter().fold(Miss::default(), |worst, row| worst_of(worst, row.miss)),
+    }
+}
+
+/// The worse of two misses, each component by itself.
+#[must_use]
+pub fn worst_of(a: Miss, b: Miss) -> Miss {
+    Miss {
+        position: a.position.max(b.position),
+        velocity: a.velocity.max(b.velocity),
+        attitude: a.attitude.max(b.attitude),
+    }
+}
+
+/// A miss in centimetres, centimetres per second and degrees.
+#[must_use]
+pub fn miss_text(miss: &Miss) -> String {
+    format!(
+        "{:.2} cm, {:.2} cm/s, {:.3} deg",
+        100.0 * miss.position,
+        100.0 * miss.velocity,
+        miss.attitude.to_degrees()
+    )
+}
+
+/// Values beside lower bounds that no plan can beat, and where two vehicles come closest.
+#[must_use]
+pub fn certificate_lines(plan: &Plan) -> Vec<String> {
+    let certificate = &plan.certificate;
+    let line = |name: &str, value: f64, bound: f64, gap: f64| {
+        let above = if gap.is_finite() {
+            format!(", at most {:.1} % above the best", 100.0 * gap)
+        } else {
+            String::new()
+        };
+        format!("{name} {value:.2} s; no plan can be below {bound:.2} s{above}")
+    };
+    let mut lines = vec![
+        line(
+            "makespan  ",
+            certificate.makespan,
+            certificate.makespan_lower_bound,
+            certificate.makespan_gap(),
+        ),
+        line("total time", certificate.total, certificate.total_lower_bound, certificate.total_gap()),
+    ];
+    if let Some(approach) = plan.closest_approach {
+        lines.push(format!(
+            "closest approach {:.2} m: vehicles {} and {} at {:.2} s",
+            approach.distance,
+            approach.vehicles[0] + 1,
+            approach.vehicles[1] + 1,
+            approach.time
+        ));
+    }
+    lines
+}
+
+/// What the independent check saw: the worst of every vehicle and of all.
+#[must_use]
+pub fn verification_text(verification: &Verification) -> String {
+    let mut table =
+        Table::new(&["verified", "legs", "worst integrated miss", "worst bound overstep", "least clearance"]);
+    let vehicles = verification.legs.iter().map(|leg| leg.vehicle + 1).max().unwrap_or(0);
+    for vehicle in 0..=vehicles {
+        // One line per vehicle, and after the last the line of all.
+        let legs = verification.legs.iter().filter(|leg| leg.vehicle == vehicle || vehicle == vehicles);
+        let (mut count, mut miss, mut bound, mut clearance) = (0, Miss::default(), 0f64, f64::INFINITY);
+        for leg in legs {
+            count += 1;
+            miss = worst_of(miss, leg.miss);
+            bound = bound.max(leg.bound_violation);
+            clearance = clearance.min(leg.clearance);
+        }
+        let name = if vehicle == vehicles { "all".to_owned() } else { format!("vehicle {}", vehicle + 1) };
+        if count > 0 {
+            let clearance = if clearance.is_finite() { format!("{clearance:.3} m") } else { "-".to_owned() };
+            table.push(vec![name, count.to_string(), miss_text(&miss), format!("{bound:.1e}"), clearance]);
+        }
+    }
+    table.render()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use planner::LegCheck;
+
+    fn row(count: usize, targets: &str) -> VehicleRow {
+        VehicleRow {
+            targets: targets.into(),
+            count,
+            length: 100.0,
+            transit: 20.0,
+            loiters: 10.0,
+            total: 30.0,
+            top_speed: 9.5,
+            top_tilt: 0.7,
+            miss: Miss { position: 0.001, velocity: 0.002, attitude: 0.001 },
+        }
+    }
+
+    #[test]
+    fn the_table_names_every_vehicle_and_sums_the_team() {
+        let spare = VehicleRow { length: 0.0, transit: 0.0, loiters: 0.0, total: 0.0, ..row(0, "") };
+        let text = vehicle_table(&[row(3, "3 1 4"), row(2, "2+5"), spare]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0].starts_with("vehicle  targets") && lines[0].ends_with("worst integrated miss"));
+        assert!(
+            lines[2].starts_with("1        3: 3 1 4") && lines[2].ends_with("0.10 cm, 0.20 cm/s, 0.057 deg")
+        );
+        assert!(lines[3].contains("2: 2+5"));
+        assert_eq!(lines[4], "3        none: stays at the depot");
+        assert!(
+            lines[5].starts_with("team     5")
+                && lines[5].contains("200.0 m")
+                && lines[5].contains("60.00 s")
+        );
+    }
+
+    #[test]
+    fn verification_lists_vehicles_and_all() {
+        let check = |vehicle, leg, position| LegCheck {
+            vehicle,
+            leg,
+            miss: Miss { position, ..Miss::default() },
+            bound_violation: 0.0,
+            clearance: 0.5 + position,
+        };
+        let verification = Verification {
+            legs: vec![check(0, 0, 0.01), check(0, 1, 0.02), check(2, 0, 0.03)],
+            failures: vec![],
+        };
+        let text = verification_text(&verification);
+        let lines: Vec<&str> = text.lines().skip(2).collect();
+        assert_eq!(lines.len(), 3, "{text}");
+        assert!(
+            lines[0].starts_with("vehicle 1  2 ")
+                && lines[0].contains("2.00 cm")
+                && lines[0].ends_with("0.510 m")
+        );
+        assert!(lines[1].starts_with("vehicle 3  1 ") && lines[2].starts_with("all        3 "), "{text}");
+        assert!(lines[2].contains("3.00 cm"));
+    }
+}

@@ -1,0 +1,123 @@
+//! The program as a user runs it, short of planning.
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn run<S: AsRef<OsStr>>(arguments: &[S], folder: &Path) -> Result<Output, std::io::Error> {
+    Command::new(env!("CARGO_BIN_EXE_ground-station")).args(arguments).current_dir(folder).output()
+}
+
+fn missions() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("missions")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn help_has_examples() -> Result<(), Box<dyn Error>> {
+    for arguments in [vec!["--help"], vec!["plan", "--help"]] {
+        let run = run(&arguments, Path::new("."))?;
+        assert_eq!(run.status.code(), Some(0));
+        assert!(text(&run.stdout).contains("Examples:"), "{arguments:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn slips_on_the_command_line_are_bad_input() -> Result<(), Box<dyn Error>> {
+    for arguments in [
+        vec!["plam"],
+        vec!["plan", "--rate", "0"],
+        vec!["plan", "--rate", "nan"],
+        vec!["plan", "--transcription", "euler"],
+        vec!["check"],
+    ] {
+        let run = run(&arguments, Path::new("."))?;
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn the_missions_beside_the_program_have_no_problems() -> Result<(), Box<dyn Error>> {
+    for name in ["field.toml", "pasture.toml", "field-ardupilot.toml"] {
+        let run = run(&["check".into(), missions().join(name)], Path::new("."))?;
+        assert_eq!(run.status.code(), Some(0), "{name}: {}", text(&run.stderr));
+        assert!(text(&run.stdout).contains("no problems"));
+    }
+    Ok(())
+}
+
+#[test]
+fn a_missing_file_is_said_with_its_name() -> Result<(), Box<dyn Error>> {
+    for command in ["check", "plan"] {
+        let run = run(&[command, "nowhere.toml"], Path::new("."))?;
+        assert_eq!(run.status.code(), Some(2));
+        let error = text(&run.stderr);
+        assert!(error.contains("nowhere.toml: cannot be read (no such file or directory)"), "{error}");
+    }
+    Ok(())
+}
+
+#[test]
+fn files_that_a_mission_names_are_checked_too() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let mission = |file: &str| {
+        format!(
+            "origin = {{ latitude = 42.0, longitude = -93.0 }}\n[depot]\nposition = [0, 0]\n[fleet]\nvehicles = 1\n[targets]\nfile = \"{file}\"\n"
+        )
+    };
+    std::fs::write(home.path().join("bad.geojson"), r#"{"type":"Point","coordinates":[-93.0,142.0]}"#)?;
+    std::fs::write(home.path().join("bad.csv"), "id,lat,lon\n1,north,-93\n")?;
+    for (file, wanted) in [
+        ("none.csv", "targets.file = \"none.csv\" cannot be read"),
+        ("bad.geojson", "bad.geojson: geometry.geometry.coordinates: latitude 142 is out of range"),
+        ("bad.csv", "bad.csv:2: lat = north is out of range"),
+        ("bad.kmz", "targets.file = \"bad.kmz\" cannot be read"),
+    ] {
+        std::fs::write(home.path().join("m.toml"), mission(file))?;
+        let run = run(&["check", "m.toml"], home.path())?;
+        let error = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(2), "{error}");
+        assert!(error.contains(wanted), "{error}");
+    }
+    Ok(())
+}
+
+#[test]
+fn geographic_targets_need_an_origin() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let mission =
+        "[depot]\nposition = [0, 0]\n[fleet]\nvehicles = 1\n[[target]]\nlatitude = 42.0\nlongitude = -93.0\n";
+    std::fs::write(home.path().join("m.toml"), mission)?;
+    let run = run(&["check", "m.toml"], home.path())?;
+    let error = text(&run.stderr);
+    assert!(
+        error.contains(
+            "m.toml:6: target[0].latitude = 42.0 is geographic, but the mission has no usable origin"
+        ),
+        "{error}"
+    );
+    assert!(error.contains("add origin = "), "{error}");
+    Ok(())
+}
+
+/// A refusal comes before any planning, and leaves the folder alone.
+#[test]
+fn a_foreign_folder_is_refused() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let out = home.path().join("out");
+    std::fs::create_dir(&out)?;
+    std::fs::write(out.join("thesis.txt"), "mine")?;
+    let run = run(&["plan"], home.path())?;
+    let error = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{error}");
+    assert!(error.contains("out exists and does not hold a plan") && error.contains("--force"), "{error}");
+    assert_eq!(std::fs::read_to_string(out.join("thesis.txt"))?, "mine");
+    assert_eq!(std::fs::read_dir(&out)?.count(), 1);
+    Ok(())
+}
