@@ -34,6 +34,12 @@ pub enum Failure {
         /// Everything out of tolerance.
         failures: Vec<planner::Failure>,
     },
+    /// The plan cannot be followed through time.
+    #[error("the flight of vehicle {} cannot be sampled: the plan is not the one of this mission; nothing was written", vehicle + 1)]
+    Sampling {
+        /// The vehicle, from 0.
+        vehicle: usize,
+    },
     /// A file could not be put into its format.
     #[error("the plan cannot be put into its file format ({source}); nothing was written")]
     Format {

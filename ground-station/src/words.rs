@@ -1,7 +1,6 @@
 //! The words for what the planner counts as values, as mission files, plans and tables use them.
 
 use crate::input::Autopilot;
-use planner::quad_dynamics::Limit;
 use planner::{Direction, Model, Objective, Pipeline, SolverStatus, Transcription};
 
 /// Words for [`Autopilot`].
@@ -48,10 +47,4 @@ pub fn sign(direction: Direction) -> i8 {
         Direction::CounterClockwise => 1,
         Direction::Clockwise => -1,
     }
-}
-
-/// What limits the speed of a loiter.
-#[must_use]
-pub fn limit(limit: Limit) -> String {
-    limit.to_string()
 }

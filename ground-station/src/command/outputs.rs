@@ -26,21 +26,21 @@ const PICTURE_RATE: f64 = 50.0;
 ///
 /// # Errors
 ///
-/// [`Failure::Format`] if a file could not be put into its format, which finite data never causes.
+/// [`Failure::Sampling`] if the plan belongs to another mission; [`Failure::Format`] if a file could not be put into its
+/// format, which finite data never causes.
 pub fn outputs(file: &MissionFile, plan: &Plan, rate: f64) -> Result<Outputs, Failure> {
-    let mission = &file.mission;
     let mut warnings = warning_lines(plan);
     let mut notes = Notes::default();
     let mut files = Vec::new();
     let mut tracks = Vec::new();
     for index in 0..plan.vehicles.len() {
         let number = index + 1;
-        let samples = plan.samples(mission, index, rate);
+        let samples = sampled(file, plan, index, rate)?;
         files.push(OutputFile {
             name: format!("vehicle-{number}.csv"),
             content: trajectory_csv(&samples, &plan.circles),
         });
-        let samples = plan.samples(mission, index, PICTURE_RATE);
+        let samples = sampled(file, plan, index, PICTURE_RATE)?;
         let picture = profile(&vehicle_profile(file, plan, index, &samples));
         files.push(OutputFile { name: format!("profile-{number}.svg"), content: picture });
         files.extend(autopilot_mission(file, plan, index, &mut notes)?);
@@ -135,6 +135,15 @@ fn keep_out(file: &MissionFile, plan: &Plan) -> Vec<KeepOut> {
         KeepOut { centre: target.position, radius, room: room.fold(f64::INFINITY, f64::min) }
     };
     file.mission.targets.iter().map(circle_of).collect()
+}
+
+/// A vehicle's flight at a rate (Hz).
+///
+/// # Errors
+///
+/// [`Failure::Sampling`] if the plan does not belong to the mission.
+pub fn sampled(file: &MissionFile, plan: &Plan, vehicle: usize, rate: f64) -> Result<Vec<Sample>, Failure> {
+    plan.samples(&file.mission, vehicle, rate).ok_or(Failure::Sampling { vehicle })
 }
 
 /// The greatest speed (m/s) and tilt (rad) of a flight.

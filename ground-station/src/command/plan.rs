@@ -1,6 +1,6 @@
 //! `plan`: from a mission file to a folder.
 
-use super::outputs::{extremes, outputs};
+use super::outputs::{extremes, outputs, sampled};
 use crate::export::folder;
 use crate::export::members;
 use crate::failure::Failure;
@@ -44,7 +44,7 @@ pub fn plan(request: &PlanRequest) -> Result<String, Failure> {
     }
     folder::check(&request.out, request.force)?;
     let plan = search(&file, request.quiet)?;
-    let mut text = summary(&file, &plan);
+    let mut text = summary(&file, &plan)?;
     if request.verify {
         let verification = plan.verify(&file.mission, &Tolerances::default());
         text.push('\n');
@@ -81,30 +81,28 @@ fn search(file: &MissionFile, quiet: bool) -> Result<Plan, Failure> {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
     };
-    let mut options = Options::default();
-    options.progress = Some(&progress);
-    let outcome = planner::plan(&file.mission, &options);
+    let outcome = planner::plan(&file.mission, &Options::default().with_progress(&progress));
     bar.finish_and_clear();
     outcome.map_err(|source| Failure::of_planner(&file.file, source))
 }
 
-fn summary(file: &MissionFile, plan: &Plan) -> String {
+fn summary(file: &MissionFile, plan: &Plan) -> Result<String, Failure> {
     let row = |(index, vehicle): (usize, &VehiclePlan)| row(file, plan, index, vehicle);
-    let rows: Vec<VehicleRow> = plan.vehicles.iter().enumerate().map(row).collect();
+    let rows = plan.vehicles.iter().enumerate().map(row).collect::<Result<Vec<_>, _>>()?;
     let mut text = report::vehicle_table(&rows);
     text.push('\n');
     for line in report::certificate_lines(plan) {
         text.push_str(&format!("{line}\n"));
     }
-    text
+    Ok(text)
 }
 
-fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> VehicleRow {
+fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> Result<VehicleRow, Failure> {
     /// Often enough to see the greatest tilt on a circle.
     const RATE: f64 = 20.0;
-    let [top_speed, top_tilt] = extremes(vehicle, &plan.samples(&file.mission, index, RATE));
+    let [top_speed, top_tilt] = extremes(vehicle, &sampled(file, plan, index, RATE)?);
     let circles = || vehicle.route.iter().filter_map(|&circle| plan.circles.get(circle));
-    VehicleRow {
+    Ok(VehicleRow {
         targets: circles().map(members).collect::<Vec<_>>().join(" "),
         count: circles().map(|circle| circle.members.len()).sum(),
         length: vehicle.length(),
@@ -114,5 +112,5 @@ fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> 
         top_speed,
         top_tilt,
         miss: vehicle.legs.iter().fold(Miss::default(), |worst, leg| worst_of(worst, leg.transition.miss)),
-    }
+    })
 }

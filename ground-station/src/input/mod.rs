@@ -160,7 +160,7 @@ fn target_of(problem: &planner::Problem) -> Option<usize> {
     use planner::Problem::{OutOfRange, TargetsTooClose};
     match problem {
         TargetsTooClose { first, .. } => Some(*first),
-        OutOfRange { field, .. } if field.starts_with("targets.positions[") => {
+        OutOfRange { field, .. } if field.starts_with("targets.") && field.ends_with(']') => {
             field.split(['[', ']']).nth(1).and_then(|index| index.parse().ok())
         }
         _ => None,

@@ -102,11 +102,19 @@ fn heights(section: &Section<'_, '_>) -> Option<[f64; 2]> {
 
 fn shaping(transition: &Section<'_, '_>, default: ShapingLimits) -> ShapingLimits {
     let section = transition.section("shaping");
-    let limits = ShapingLimits {
-        speed: section.number("speed", Range::POSITIVE).unwrap_or(default.speed),
-        acceleration: section.number("acceleration", Range::POSITIVE).unwrap_or(default.acceleration),
-        jerk: section.number("jerk", Range::POSITIVE).unwrap_or(default.jerk),
-    };
+    let mut limits = default;
+    let keys = [
+        ("speed", &mut limits.speed),
+        ("acceleration", &mut limits.acceleration),
+        ("jerk", &mut limits.jerk),
+        ("climb_speed", &mut limits.climb_speed),
+        ("descent_speed", &mut limits.descent_speed),
+        ("vertical_acceleration", &mut limits.vertical_acceleration),
+        ("vertical_jerk", &mut limits.vertical_jerk),
+    ];
+    for (key, limit) in keys {
+        *limit = section.number(key, Range::POSITIVE).unwrap_or(*limit);
+    }
     section.finish();
     limits
 }

@@ -98,7 +98,7 @@ fn circle_entry(index: usize, circle: &Circle) -> CircleEntry {
         height_m: circle.height,
         sweep_deg: circle.sweep.to_degrees(),
         speed_m_s: circle.speed,
-        speed_limited_by: words::limit(circle.limit),
+        speed_limited_by: circle.limit.map(|limit| limit.to_string()),
         duration_s: circle.duration,
     }
 }
@@ -172,6 +172,7 @@ fn transition_entry(transition: &Transition) -> TransitionEntry {
         integrated_miss: miss_entry(&transition.miss),
         knots_s: transition.knots.clone(),
         states: by_column(&state_columns(transition.model), &transition.states),
+        controls_per_segment: transition.control_nodes,
         controls: by_column(&control_columns(transition.model), &transition.controls),
     }
 }

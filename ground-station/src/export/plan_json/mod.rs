@@ -85,7 +85,8 @@ pub struct CircleEntry {
     pub height_m: f64,
     pub sweep_deg: f64,
     pub speed_m_s: f64,
-    pub speed_limited_by: String,
+    /// What keeps the speed from being greater, if anything does.
+    pub speed_limited_by: Option<String>,
     pub duration_s: f64,
 }
 
@@ -180,7 +181,9 @@ pub struct TransitionEntry {
     pub knots_s: Vec<f64>,
     /// One column per state, one value per knot.
     pub states: BTreeMap<String, Vec<f64>>,
-    /// One column per control, one value per segment (piecewise constant) or per collocation point.
+    /// Equally spaced nodes of the control in a segment: 1 is a constant control, 2 a linear one, 3 a quadratic one.
+    pub controls_per_segment: usize,
+    /// One column per control, so many values for each segment in turn.
     pub controls: BTreeMap<String, Vec<f64>>,
 }
 
