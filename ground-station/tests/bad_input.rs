@@ -269,3 +269,27 @@ fn the_program_says_so_and_writes_nothing() -> Result<(), Box<dyn std::error::Er
     assert_eq!(names.len(), 2, "{names:?}");
     Ok(())
 }
+
+/// Missions that read well and cannot be flown: each is said with key, value and remedy.
+#[test]
+fn missions_that_cannot_be_flown_are_said() {
+    let field = ground_station::input::FIELD;
+    for (from, to, key, wanted) in [
+        ("vehicles = 3", "vehicles = 0", "fleet.vehicles", "give a whole number from 1"),
+        ("thrust_budget = 0.6", "thrust_budget = 0.4", "loiter", "short of the weight"),
+        ("position = [0.0, 0.0]", "position = [12.0, 7.0]", "depot.position", "move the depot away"),
+        ("[12.0, 8.0],", "[12.0, 8.0],\n    [14.0, 8.0],", "targets", "too close"),
+        ("thrust_budget = 0.9", "thrust_budget = 0.51", "transition.thrust_budget", "raise it to at least"),
+        ("safe_distance = 1.5", "safe_distance = 3.5", "loiter.radius", "is inside the safe distance"),
+        ("height = 1.5", "height = 45.0", "transition.heights", "outside transition.heights"),
+    ] {
+        assert!(field.contains(from), "{from}");
+        let found = parse("m.toml", &field.replace(from, to), Path::new("")).err().unwrap_or_default();
+        let named =
+            found.iter().any(|problem| problem.key.starts_with(key) && problem.message.contains(wanted));
+        assert!(named, "{to}: {found:#?}");
+    }
+    let empty = "[depot]\nposition = [0, 0]\n[fleet]\nvehicles = 1\n";
+    let found = parse("m.toml", empty, Path::new("")).err().unwrap_or_default();
+    assert!(found.len() == 1 && found[0].message.starts_with("targets: there are none"), "{found:#?}");
+}

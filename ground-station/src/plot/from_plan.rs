@@ -83,7 +83,7 @@ pub fn tilt(sample: &Sample) -> f64 {
 
 fn speed_limits(file: &MissionFile) -> Vec<Limit> {
     let mission = &file.mission;
-    let on_circles = Limit { name: "on circles".into(), value: mission.loiter.speed_limit };
+    let on_circles = Limit { name: "limit on circles".into(), value: mission.loiter.speed_limit };
     let on_the_way = match mission.transition.model {
         Model::JerkLimited => Limit { name: "shaping".into(), value: mission.transition.shaping.speed },
         _ => Limit { name: "level top speed".into(), value: level_top_speed(file) },

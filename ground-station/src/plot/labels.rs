@@ -19,6 +19,12 @@ impl Area {
         }
     }
 
+    /// The box without a rim.
+    #[must_use]
+    pub fn shrunk(&self, rim: f64) -> Self {
+        Self { low: self.low.map(|low| low + rim), high: self.high.map(|high| high - rim) }
+    }
+
     /// The area that two boxes share (px^2).
     #[must_use]
     pub fn overlap(&self, other: &Self) -> f64 {

@@ -81,7 +81,7 @@ pub fn map(scene: &MapScene) -> String {
     for target in &scene.targets {
         svg.disc(view.at(target.position), view.scale * target.safe_distance, "#000000", 0.07);
     }
-    let mut labels = Labels::on(view.paper());
+    let mut labels = Labels::on(view.paper().shrunk(5.0));
     for (index, vehicle) in scene.vehicles.iter().enumerate() {
         tour(&mut svg, &view, vehicle, index);
     }

@@ -1,0 +1,183 @@
+//! The missions beside the program, planned, verified and written.
+//!
+//! Solving every candidate of the whole missions takes minutes in a debug build, so by default they are planned with few
+//! candidate entries on a coarse mesh, the pasture around a few of its targets. `cargo test --release -- --ignored` plans
+//! them as they are.
+
+use ground_station::command::{PlanRequest, plan};
+use ground_station::export::plan_json::PlanDocument;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+fn missions() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("missions")
+}
+
+fn request(file: PathBuf, out: PathBuf) -> PlanRequest {
+    PlanRequest {
+        file: Some(file),
+        out,
+        force: false,
+        rate: 20.0,
+        verify: true,
+        transcription: None,
+        quiet: true,
+    }
+}
+
+/// Plans a file with `--verify` and looks at everything that is written.
+fn plan_and_look(file: PathBuf, vehicles: usize) -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let out = home.path().join("out");
+    let text = plan(&request(file, out.clone()))?;
+    assert!(text.contains("verification passed"), "{text}");
+    let mut names: Vec<String> = std::fs::read_dir(&out)?
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    let mut wanted = vec!["map.svg".to_owned(), "plan.json".to_owned()];
+    for number in 1..=vehicles {
+        wanted.extend(["csv", "plan"].map(|kind| format!("vehicle-{number}.{kind}")));
+        wanted.push(format!("profile-{number}.svg"));
+    }
+    wanted.sort();
+    assert_eq!(names, wanted);
+    look_at_document(&std::fs::read_to_string(out.join("plan.json"))?)?;
+    for number in 1..=vehicles {
+        look_at_table(&std::fs::read_to_string(out.join(format!("vehicle-{number}.csv")))?);
+    }
+    Ok(())
+}
+
+/// The document survives a round trip, its times add up and every target is circled once.
+fn look_at_document(text: &str) -> Result<(), Box<dyn Error>> {
+    let document: PlanDocument = serde_json::from_str(text)?;
+    assert_eq!(document.to_text()?, text);
+    let mut circled = vec![0; document.targets.len()];
+    for vehicle in &document.vehicles {
+        let mut time = 0.0;
+        for leg in &vehicle.legs {
+            assert!((leg.start_time_s - time).abs() < 1e-9 && leg.end_time_s >= leg.arrival_time_s);
+            time = leg.end_time_s;
+            for &target in leg.loiter.iter().flat_map(|loiter| &document.circles[loiter.circle - 1].targets) {
+                circled[target - 1] += 1;
+            }
+            let miss = leg.transition.integrated_miss;
+            assert!(miss.position_m < 0.05 && miss.velocity_m_s < 0.05 && miss.attitude_deg < 1.0);
+            let knots = leg.transition.knots_s.len();
+            assert!(knots > 1 && leg.transition.states.values().all(|column| column.len() == knots));
+            let controls = (knots - 1) * leg.transition.controls_per_segment;
+            assert!(leg.transition.controls.values().all(|column| column.len() == controls));
+        }
+        assert!((vehicle.duration_s - time).abs() < 1e-9);
+    }
+    assert!(circled.iter().all(|&times| times == 1), "{circled:?}");
+    assert!(document.certificate.makespan_lower_bound_s <= document.team.makespan_s);
+    Ok(())
+}
+
+/// Twenty columns, times that rise by a twentieth of a second, and no jump that the speed does not explain.
+fn look_at_table(text: &str) {
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').take(7).filter_map(|cell| cell.parse().ok()).collect())
+        .collect();
+    assert!(rows.len() > 20 && text.lines().all(|line| line.split(',').count() == 20));
+    for pair in rows.windows(2) {
+        let step = pair[1][0] - pair[0][0];
+        assert!(step > 0.0 && step < 0.05 + 1e-6, "{step}");
+        for axis in 1..4 {
+            let mean = (pair[0][axis + 3] + pair[1][axis + 3]) / 2.0;
+            let moved = pair[1][axis] - pair[0][axis];
+            assert!(
+                (moved - mean * step).abs() < 0.03,
+                "at {} s: {moved} against {}",
+                pair[0][0],
+                mean * step
+            );
+        }
+    }
+}
+
+/// A mission file with some of its text replaced, in a folder of its own.
+fn lighter(name: &str, changes: &[(&str, &str)], folder: &Path) -> Result<PathBuf, Box<dyn Error>> {
+    let mut text = std::fs::read_to_string(missions().join(name))?;
+    for (from, to) in changes {
+        assert!(text.contains(from), "{name} has no {from}");
+        text = text.replace(from, to);
+    }
+    let file = folder.join(name);
+    std::fs::write(&file, text)?;
+    Ok(file)
+}
+
+#[test]
+fn the_field_light() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let changes = [("entries = 16", "entries = 1"), ("segments = 40", "segments = 20")];
+    plan_and_look(lighter("field.toml", &changes, home.path())?, 3)
+}
+
+#[test]
+fn the_field_for_ardupilot_light() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let changes = [("entries = 16", "entries = 1"), ("segments = 40", "segments = 20")];
+    plan_and_look(lighter("field-ardupilot.toml", &changes, home.path())?, 3)
+}
+
+/// Four of the hundred targets.
+#[test]
+fn the_pasture_light() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let mut points: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(missions().join("pasture.geojson"))?)?;
+    if let Some(features) = points["features"].as_array_mut() {
+        features.truncate(4);
+    }
+    std::fs::write(home.path().join("pasture.geojson"), points.to_string())?;
+    let changes = [("entries = 8", "entries = 1"), ("vehicles = 8", "vehicles = 2")];
+    plan_and_look(lighter("pasture.toml", &changes, home.path())?, 2)
+}
+
+/// The same mission gives the same bytes in every file.
+#[test]
+fn planning_twice_gives_the_same_files() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let changes = [
+        ("entries = 16", "entries = 1"),
+        ("segments = 40", "segments = 20"),
+        ("    [27.5, 22.0],\n    [8.0, 31.0],\n    [45.5, 38.0],\n    [19.0, 44.5],\n    [33.0, 6.0],\n", ""),
+    ];
+    let file = lighter("field.toml", &changes, home.path())?;
+    let [first, second] = ["first", "second"].map(|name| home.path().join(name));
+    for out in [&first, &second] {
+        plan(&request(file.clone(), out.clone()))?;
+    }
+    for entry in std::fs::read_dir(&first)?.flatten() {
+        let other = second.join(entry.file_name());
+        assert!(std::fs::read(entry.path())? == std::fs::read(&other)?, "{}", other.display());
+    }
+    // A plan of ours is replaced without being asked.
+    plan(&request(file, first))?;
+    Ok(())
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn the_field() -> Result<(), Box<dyn Error>> {
+    plan_and_look(missions().join("field.toml"), 3)
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn the_field_for_ardupilot() -> Result<(), Box<dyn Error>> {
+    plan_and_look(missions().join("field-ardupilot.toml"), 3)
+}
+
+#[test]
+#[ignore = "takes many minutes"]
+fn the_pasture() -> Result<(), Box<dyn Error>> {
+    plan_and_look(missions().join("pasture.toml"), 8)
+}
