@@ -25,7 +25,7 @@
 //! use ground_station::input;
 //! use std::path::Path;
 //!
-//! let mission = "[depot]\nposition = [0.0, 0.0]\n[fleet]\nvehicles = 0\n[loiter]\nraduis = 4.0\n";
+//! let mission = "[depot]\nposition = [0.0, 0.0]\n[fleet]\nvehicles = 0\n[loiter]\nraduis = 4.0\n[[target]]\nposition = [20.0, 5.0]\n";
 //! let problems = input::parse("my.toml", mission, Path::new("")).unwrap_err();
 //! let messages: Vec<String> = problems.iter().map(ToString::to_string).collect();
 //! assert_eq!(messages[0], "my.toml:4: fleet.vehicles = 0 is out of range: give a whole number from 1 to 1000");

@@ -106,6 +106,7 @@ fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> 
         targets: circles().map(members).collect::<Vec<_>>().join(" "),
         count: circles().map(|circle| circle.members.len()).sum(),
         length: vehicle.length(),
+        start: vehicle.start_time(),
         transit: vehicle.transition_time(),
         loiters: vehicle.loiter_time(),
         total: vehicle.duration(),

@@ -155,7 +155,7 @@ fn from_file(path: &Path, text: &str, reader: &Reader<'_>, frame: Frame) -> Vec<
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let mut wrong =
         |line: Option<usize>, key: &str, message: String| reader.add_elsewhere(&file, line, key, message);
-    let listed = match extension.to_ascii_lowercase().as_str() {
+    match extension.to_ascii_lowercase().as_str() {
         "geojson" | "json" => geojson_file::read(&file, text, frame, &mut wrong),
         "csv" => table_file::read(&file, text, frame, &mut wrong),
         _ => {
@@ -164,8 +164,7 @@ fn from_file(path: &Path, text: &str, reader: &Reader<'_>, frame: Frame) -> Vec<
                 "targets.file",
                 "targets.file is of an unknown kind: give a .geojson, .json or .csv file".into(),
             );
-            return Vec::new();
+            Vec::new()
         }
-    };
-    listed
+    }
 }

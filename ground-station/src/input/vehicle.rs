@@ -4,6 +4,17 @@ use super::range::Range;
 use super::reader::{Item, Reader, Section};
 use planner::quad_dynamics::{Rotor, Spin, Vehicle, VehicleParameters};
 
+/// A vehicle known by name.
+type Preset = fn() -> VehicleParameters;
+
+/// The vehicles known by name.
+const PRESETS: [(&str, Preset); 4] = [
+    ("survey-450", VehicleParameters::survey_450),
+    ("crazyflie", VehicleParameters::crazyflie),
+    ("hummingbird", VehicleParameters::hummingbird),
+    ("racing", VehicleParameters::racing),
+];
+
 /// Where the rotors of a layout sit.
 #[derive(Debug, Clone, Copy)]
 enum Layout {
@@ -16,7 +27,6 @@ enum Layout {
 /// With a preset, the table changes single parameters; without one, a table must have them all. Neither is the preset
 /// `survey-450`. What cannot be used is recorded, and the preset returned in its place.
 pub fn read(root: &Section<'_, '_>, reader: &Reader<'_>, preset: Option<&Item<'_, '_>>) -> Option<Vehicle> {
-    const PRESETS: [(&str, fn() -> VehicleParameters); 1] = [("survey-450", VehicleParameters::survey_450)];
     let section = root.section("vehicle");
     let chosen = preset.and_then(|item| item.choice(&PRESETS));
     let mut parameters = chosen.unwrap_or(VehicleParameters::survey_450)();

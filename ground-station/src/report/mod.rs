@@ -17,6 +17,8 @@ pub struct VehicleRow {
     pub count: usize,
     /// Metres.
     pub length: f64,
+    /// When it takes off (s after the mission's start); later than 0 where it waits for others to pass.
+    pub start: f64,
     /// Seconds in transitions.
     pub transit: f64,
     /// Seconds in loiters.
@@ -38,6 +40,7 @@ pub fn vehicle_table(rows: &[VehicleRow]) -> String {
         "vehicle",
         "targets",
         "length",
+        "takes off",
         "in transit",
         "in loiters",
         "total",
@@ -64,6 +67,7 @@ fn cells(name: String, row: &VehicleRow) -> Vec<String> {
             format!("{}: {}", row.count, row.targets)
         },
         format!("{:.1} m", row.length),
+        format!("{:.2} s", row.start),
         format!("{:.2} s", row.transit),
         format!("{:.2} s", row.loiters),
         format!("{:.2} s", row.total),
@@ -81,6 +85,7 @@ fn team_row(rows: &[VehicleRow]) -> VehicleRow {
         targets: String::new(),
         count: rows.iter().map(|row| row.count).sum(),
         length: sum(|row| row.length),
+        start: rows.iter().filter(|row| row.count > 0).map(|row| row.start).reduce(f64::min).unwrap_or(0.0),
         transit: sum(|row| row.transit),
         loiters: sum(|row| row.loiters),
         total: sum(|row| row.total),
@@ -179,6 +184,7 @@ mod tests {
             targets: targets.into(),
             count,
             length: 100.0,
+            start: 0.25,
             transit: 20.0,
             loiters: 10.0,
             total: 30.0,

@@ -131,6 +131,7 @@ fn vehicle_entry(index: usize, vehicle: &VehiclePlan) -> VehicleEntry {
         pad_north_m: vehicle.pad[1],
         pad_up_m: vehicle.pad[2],
         route: vehicle.route.iter().map(|circle| circle + 1).collect(),
+        start_time_s: vehicle.start_time(),
         duration_s: vehicle.duration(),
         transition_time_s: vehicle.transition_time(),
         loiter_time_s: vehicle.loiter_time(),

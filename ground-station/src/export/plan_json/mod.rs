@@ -130,6 +130,8 @@ pub struct VehicleEntry {
     pub pad_up_m: f64,
     /// Circles in the order in which they are flown.
     pub route: Vec<usize>,
+    /// When it takes off; later than 0 where it waits for others to pass.
+    pub start_time_s: f64,
     pub duration_s: f64,
     pub transition_time_s: f64,
     pub loiter_time_s: f64,

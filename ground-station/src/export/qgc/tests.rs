@@ -29,8 +29,11 @@ fn vehicle(circles: Vec<CircleTask>) -> VehicleMission {
     VehicleMission { pad: [3.0, 0.0], circles, return_speed: 9.0, keep_out }
 }
 
+/// The command of an item and its parameters.
+type Loaded = (u64, Vec<Option<f64>>);
+
 /// What a loader requires: returns (command, params) of every item, or what is wrong.
-fn load(text: &str) -> Result<Vec<(u64, Vec<Option<f64>>)>, String> {
+fn load(text: &str) -> Result<Vec<Loaded>, String> {
     let file: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let need = |condition: bool, what: &str| if condition { Ok(()) } else { Err(what.to_owned()) };
     need(file["fileType"] == "Plan" && file["version"] == 1, "file type and version")?;
@@ -54,7 +57,7 @@ fn load(text: &str) -> Result<Vec<(u64, Vec<Option<f64>>)>, String> {
     items.iter().enumerate().map(|(index, item)| load_item(index, item)).collect()
 }
 
-fn load_item(index: usize, item: &Value) -> Result<(u64, Vec<Option<f64>>), String> {
+fn load_item(index: usize, item: &Value) -> Result<Loaded, String> {
     let params = item["params"].as_array().ok_or("params")?;
     let is_right = item["type"] == "SimpleItem"
         && item["autoContinue"].is_boolean()
