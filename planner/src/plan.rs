@@ -204,13 +204,6 @@ pub struct Approach {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Two vehicles come closer than the mission's separation.
-    Separation {
-        /// Where they come closest.
-        approach: Approach,
-        /// The separation asked for (m).
-        required: f64,
-    },
     /// A vehicle flies longer than the mission's endurance.
     Endurance {
         /// The vehicle.

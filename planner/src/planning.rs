@@ -7,8 +7,7 @@ use crate::legs::Airspace;
 use crate::mission::{Mission, Model};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
-use crate::sample::Sampler;
-use crate::separation::{Airborne, RESOLUTION, closest_pair, start_delays};
+use crate::separation::{closest_pair, in_the_air, start_delays};
 use crate::transition::Pilot;
 use crate::{allocation, certificate};
 
@@ -53,7 +52,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     let mut plan = Plan { circles, vehicles, certificate, closest_approach: None, warnings: Vec::new() };
     delay_starts(&mut plan, mission);
     plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);
-    plan.closest_approach = in_the_air(&plan, mission, |fleet| closest_pair(fleet)).flatten();
+    plan.closest_approach = in_the_air(&plan, mission, closest_pair).flatten();
     plan.warnings = warnings(&plan, mission);
     Ok(plan)
 }
@@ -97,35 +96,11 @@ fn fly_all(airspace: &Airspace, pads: &[[f64; 3]], routes: &[Vec<usize>]) -> Res
     flown.into_iter().collect()
 }
 
-/// What `ask` answers about the vehicles of a plan in the air.
-fn in_the_air<R>(plan: &Plan, mission: &Mission, ask: impl Fn(&[Option<Airborne>]) -> R) -> Option<R> {
-    let sampler = Sampler::new(plan, mission)?;
-    let airborne = |vehicle: usize| {
-        let planned = &plan.vehicles[vehicle];
-        let (first, last) = (planned.legs.first()?, planned.legs.last()?);
-        let transitions = planned.legs.iter().map(|leg| leg.transition.max_speed);
-        let loiters = planned.route.iter().map(|&circle| plan.circles[circle].speed);
-        let sampler = &sampler;
-        Some(Airborne {
-            position: Box::new(move |time| sampler.sample(vehicle, time).position),
-            flight: [first.start_time, last.end_time()],
-            top_speed: transitions.chain(loiters).fold(0.0, f64::max),
-        })
-    };
-    let fleet: Vec<Option<Airborne>> = (0..plan.vehicles.len()).map(airborne).collect();
-    Some(ask(&fleet))
-}
-
 fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let spare = plan.vehicles.iter().filter(|vehicle| vehicle.route.is_empty()).count();
     if spare > 0 {
         warnings.push(Warning::Spare { vehicles: spare });
-    }
-    let required = mission.fleet.separation;
-    if let Some(approach) = plan.closest_approach.filter(|approach| approach.distance < required - RESOLUTION)
-    {
-        warnings.push(Warning::Separation { approach, required });
     }
     for (vehicle, planned) in plan.vehicles.iter().enumerate() {
         let (duration, endurance) = (planned.duration(), mission.fleet.endurance);

@@ -1,6 +1,8 @@
 //! How close vehicles come to each other, proved on the continuous trajectories, and start delays that keep them apart.
 
-use crate::plan::Approach;
+use crate::mission::Mission;
+use crate::plan::{Approach, Plan};
+use crate::sample::Sampler;
 
 /// How far the distance found may be above the true least one (m).
 pub(crate) const RESOLUTION: f64 = 1e-3;
@@ -13,6 +15,29 @@ pub(crate) struct Airborne<'a> {
     pub flight: [f64; 2],
     /// Speed that is never exceeded (m/s).
     pub top_speed: f64,
+}
+
+/// What `ask` answers about the vehicles of a plan in the air.
+pub(crate) fn in_the_air<R>(
+    plan: &Plan,
+    mission: &Mission,
+    ask: impl Fn(&[Option<Airborne>]) -> R,
+) -> Option<R> {
+    let sampler = Sampler::new(plan, mission)?;
+    let airborne = |vehicle: usize| {
+        let planned = &plan.vehicles[vehicle];
+        let (first, last) = (planned.legs.first()?, planned.legs.last()?);
+        let transitions = planned.legs.iter().map(|leg| leg.transition.max_speed);
+        let loiters = planned.route.iter().map(|&circle| plan.circles[circle].speed);
+        let sampler = &sampler;
+        Some(Airborne {
+            position: Box::new(move |time| sampler.sample(vehicle, time).position),
+            flight: [first.start_time, last.end_time()],
+            top_speed: transitions.chain(loiters).fold(0.0, f64::max),
+        })
+    };
+    let fleet: Vec<Option<Airborne>> = (0..plan.vehicles.len()).map(airborne).collect();
+    Some(ask(&fleet))
 }
 
 /// The least distance between two vehicles while both fly, to within [`RESOLUTION`]; `None` if they never fly together.

@@ -2,7 +2,8 @@
 
 use crate::circles::{Orbit, orbits};
 use crate::mission::Mission;
-use crate::plan::{Certificate, Leg, Miss, Plan};
+use crate::plan::{Approach, Certificate, Leg, Miss, Plan};
+use crate::separation::{RESOLUTION, closest_pair, in_the_air};
 use crate::transition::{Pilot, hover, miss};
 use quad_dynamics::Motion;
 
@@ -98,6 +99,15 @@ pub enum Failure {
         /// How often.
         times: usize,
     },
+    /// Two vehicles come closer in the air than the mission's separation.
+    #[error(
+        "vehicles {} and {} come within {:.3} m of each other at {:.2} s",
+        approach.vehicles[0] + 1, approach.vehicles[1] + 1, approach.distance, approach.time
+    )]
+    Separation {
+        /// Where they come closest.
+        approach: Approach,
+    },
     /// A value found is below its lower bound: one of the two is wrong.
     #[error("the certificate contradicts itself: {value} s found below a lower bound of {lower_bound} s")]
     Certificate {
@@ -131,7 +141,8 @@ impl Plan {
     ///
     /// Every transition's controls are integrated again by the adaptive integrator, from the state in which the vehicle
     /// really is: the loiter state (or hover) computed afresh from mission and entry. The end is compared with the next such
-    /// state; bounds, heights and safe distances are looked at between knots too; every target must be circled exactly once.
+    /// state; bounds, heights and safe distances are looked at between knots too; every target must be circled exactly once;
+    /// vehicles must keep their separation at every moment in the air.
     #[must_use]
     pub fn verify(&self, mission: &Mission, tolerances: &Tolerances) -> Verification {
         let mut verification = Verification::default();
@@ -162,6 +173,10 @@ impl Plan {
             }
         }
         verification.count_targets(self, mission);
+        let approach = in_the_air(self, mission, closest_pair).flatten();
+        let least = mission.fleet.separation - 2.0 * RESOLUTION;
+        let close = approach.filter(|approach| approach.distance < least);
+        verification.failures.extend(close.map(|approach| Failure::Separation { approach }));
         let Certificate { makespan, makespan_lower_bound, total, total_lower_bound } = self.certificate;
         for (value, lower_bound) in [(makespan, makespan_lower_bound), (total, total_lower_bound)] {
             if value < lower_bound {

@@ -104,7 +104,7 @@ fn trajectories_are_continuous_from_pad_to_pad() {
     for (vehicle, planned) in plan.vehicles.iter().enumerate() {
         let samples = plan.samples(&mission, vehicle, 50.0).unwrap();
         let (first, last) = (samples[0], samples[samples.len() - 1]);
-        assert!((last.time - planned.duration()).abs() < 1e-9);
+        assert!((first.time - planned.start_time()).abs() < 1e-9 && (last.time - planned.end_time()).abs() < 1e-9);
         for axis in 0..3 {
             assert!((first.position[axis] - planned.pad[axis]).abs() < 1e-9);
             assert!((last.position[axis] - planned.pad[axis]).abs() < 0.05);
@@ -154,6 +154,11 @@ fn a_tampered_plan_is_caught() {
     let mut ragged = plan.clone();
     ragged.vehicles[flying].legs[0].transition.states[1].pop();
     assert!(failures(&ragged).iter().any(|failure| matches!(failure, Failure::Joint { leg: 0, .. })));
+
+    let mut crowded = plan.clone();
+    let other = (0..2).find(|&vehicle| vehicle != flying).unwrap();
+    crowded.vehicles[other] = crowded.vehicles[flying].clone();
+    assert!(failures(&crowded).iter().any(|failure| matches!(failure, Failure::Separation { .. })));
 
     let mut boastful = plan;
     boastful.certificate.makespan = 0.5 * boastful.certificate.makespan_lower_bound;

@@ -10,14 +10,6 @@ pub fn warning_lines(plan: &Plan) -> Vec<String> {
 
 fn line(warning: &Warning) -> String {
     match warning {
-        Warning::Separation { approach, required } => format!(
-            "vehicles {} and {} come within {:.2} m of each other at {:.2} s, closer than the separation of {required} m: \
-             delay one of them, fly at different heights, or lower fleet.separation",
-            approach.vehicles[0] + 1,
-            approach.vehicles[1] + 1,
-            approach.distance,
-            approach.time
-        ),
         Warning::Endurance { vehicle, duration, endurance } => format!(
             "vehicle {} flies {duration:.0} s, longer than the endurance of {endurance:.0} s: use more vehicles or fewer targets",
             vehicle + 1
