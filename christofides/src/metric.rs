@@ -48,6 +48,13 @@ pub trait Metric {
     fn geometry(&self) -> Geometry<'_> {
         Geometry::Abstract
     }
+
+    /// Points that are near to each other where distances are short; a hint for the local search alone.
+    ///
+    /// Rounded Euclidean distances are no [`geometry`](Metric::geometry), but have positions.
+    fn positions(&self) -> Geometry<'_> {
+        self.geometry()
+    }
 }
 
 impl<M: Metric + ?Sized> Metric for &M {
@@ -66,5 +73,9 @@ impl<M: Metric + ?Sized> Metric for &M {
 
     fn geometry(&self) -> Geometry<'_> {
         (**self).geometry()
+    }
+
+    fn positions(&self) -> Geometry<'_> {
+        (**self).positions()
     }
 }

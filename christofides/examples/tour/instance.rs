@@ -141,6 +141,11 @@ impl Metric for Distances<'_> {
         !self.is_rounded && self.instance.kind != Kind::Explicit
     }
 
+    fn positions(&self) -> Geometry<'_> {
+        let has_points = !matches!(self.instance.kind, Kind::Explicit | Kind::Geographic);
+        if has_points { Geometry::Planar(&self.instance.points) } else { Geometry::Abstract }
+    }
+
     fn geometry(&self) -> Geometry<'_> {
         let is_plane = matches!(self.instance.kind, Kind::Euclidean | Kind::Ceiling);
         if is_plane && !self.is_rounded {

@@ -19,7 +19,7 @@ pub(crate) use pinned::Pinned;
 pub(crate) use pinned::check_ends;
 
 /// Neighbours in the lists of the local search, all tried in every step: fewer make steps quicker and tours longer.
-const NEIGHBOURS: usize = 10;
+const NEIGHBOURS: usize = 8;
 
 /// Below this number of vertices the subsets are searched: as quick, and exact.
 const SEARCH_FROM: usize = 8;

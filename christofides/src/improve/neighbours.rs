@@ -3,6 +3,9 @@
 use crate::kd_tree::KdTree;
 use crate::metric::{Geometry, Metric};
 
+/// Neighbours of a point in each quadrant that are taken before nearer ones in others.
+const PER_QUADRANT: usize = 2;
+
 /// For every vertex its nearest ones, nearest first.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Neighbours {
@@ -13,24 +16,42 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// The `k` nearest of every vertex; `O(n log n)` for points, else `O(n^2)`.
     pub fn nearest(metric: &impl Metric, k: usize) -> Self {
-        match metric.geometry() {
-            Geometry::Planar(points) => Self::of_points(points, k),
-            Geometry::Spatial(points) => Self::of_points(points, k),
+        match metric.positions() {
+            Geometry::Planar(points) => Self::of_points(metric, points, k),
+            Geometry::Spatial(points) => Self::of_points(metric, points, k),
             Geometry::Abstract => Self::by_pairs(metric, k),
         }
     }
 
-    fn of_points<const D: usize>(points: &[[f64; D]], k: usize) -> Self {
+    /// Of the three times as many nearest ones that are looked at, up to two in each quadrant come first, so that a vertex
+    /// at the edge of a cluster has neighbours on both sides.
+    fn of_points<const D: usize>(metric: &impl Metric, points: &[[f64; D]], k: usize) -> Self {
         let tree = KdTree::new(points);
         let k = k.min(points.len().saturating_sub(1));
         let mut entries = vec![(0.0, 0); points.len() * k];
-        let (mut found, mut stack) = (Vec::new(), Vec::new());
+        let (mut found, mut stack, mut chosen) = (Vec::new(), Vec::new(), Vec::new());
         for (position, &index) in tree.order.iter().enumerate() {
-            tree.nearest(position, k, &mut found, &mut stack);
+            tree.nearest(position, 3 * k, &mut found, &mut stack);
+            chosen.clear();
+            let mut in_quadrant = [0; 4];
+            let quadrant = |other: u32| {
+                let (a, b) = (&tree.points[position], &tree.points[other as usize]);
+                usize::from(b[0] > a[0]) + 2 * usize::from(b[1] > a[1])
+            };
+            found.retain(|&(_, other)| {
+                let count = &mut in_quadrant[quadrant(other)];
+                *count += 1;
+                let is_chosen = *count <= PER_QUADRANT && chosen.len() < k;
+                chosen.extend(is_chosen.then_some(other));
+                !is_chosen
+            });
+            chosen.extend(found.iter().map(|&(_, other)| other).take(k - chosen.len()));
             let row = &mut entries[index as usize * k..][..k];
-            for (slot, &(squared, other)) in row.iter_mut().zip(&found) {
-                *slot = (squared.sqrt(), tree.order[other as usize]);
+            for (slot, &other) in row.iter_mut().zip(&chosen) {
+                let neighbour = tree.order[other as usize];
+                *slot = (metric.distance(index as usize, neighbour as usize), neighbour);
             }
+            row.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         }
         Self { start: (0..=points.len()).map(|v| (v * k) as u32).collect(), entries }
     }

@@ -5,9 +5,7 @@
 
 use super::solver::Matching;
 use crate::metric::{Geometry, Metric};
-
-/// Fewest members of a set for which boxes are used.
-const BOXES_FROM: usize = 48;
+use std::ops::Range;
 
 /// What the dual solution of a matching proves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +36,7 @@ impl Certificate {
 /// Checks feasibility and complementary slackness of the duals on the complete graph of `metric`.
 ///
 /// # Complexity
-/// `O(n log n)` typically for points, else `O(n^2)`, each times the depth of nesting.
+/// `O(n log^2 n)` typically for points, else `O(n^2)`; the sets are read in time of their total size.
 #[must_use]
 pub fn certificate(metric: &impl Metric, matching: &Matching) -> Certificate {
     let n = metric.len();
@@ -138,136 +136,209 @@ impl Sets {
         metric.distance(u, v) - matching.duals()[u] - matching.duals()[v] - separate(u, v) - separate(v, u)
     }
 
-    /// The least slack of all pairs, at most zero: each set is searched for pairs that no smaller set holds.
+    /// The least slack of all pairs, at most zero.
+    ///
+    /// Each set is searched for pairs from different children. Of each such pair at least one vertex is outside the
+    /// largest child; so only the others ask, and a vertex asks `O(log n)` times.
     fn least_slack(&self, metric: &impl Metric, matching: &Matching) -> f64 {
-        let n = metric.len();
+        let family = Family::new(self, matching);
+        match metric.geometry() {
+            Geometry::Planar(points) => family.least_slack(metric, &mut Cells::new(points, &family)),
+            Geometry::Spatial(points) => family.least_slack(metric, &mut Cells::new(points, &family)),
+            Geometry::Abstract => family.least_slack(metric, &mut AllPairs),
+        }
+    }
+}
+
+/// The sets as ranges of a numbering of the vertices, the set of all vertices last.
+struct Family {
+    /// Vertex of every number.
+    vertex: Vec<usize>,
+    /// Sum of the duals of the vertex and of all blossoms around it, by number.
+    radius: Vec<f64>,
+    /// Range of every blossom, then of all vertices.
+    range: Vec<Range<usize>>,
+    /// Ranges of the children of every set.
+    children: Vec<Vec<Range<usize>>>,
+    /// Sum of the duals of every set and of those around it.
+    around: Vec<f64>,
+}
+
+impl Family {
+    fn new(sets: &Sets, matching: &Matching) -> Self {
+        let (n, blossoms) = (matching.mates().len(), matching.blossoms());
+        let outside = blossoms.len();
+        let index = |k: usize| if k == OUTSIDE { outside } else { k };
+        let mut inner = vec![Vec::new(); outside + 1];
+        let mut own = vec![Vec::new(); outside + 1];
+        sets.parent.iter().enumerate().for_each(|(k, &parent)| inner[index(parent)].push(k));
+        sets.innermost.iter().enumerate().for_each(|(v, &k)| own[index(k)].push(v));
+        let mut family = Family {
+            vertex: Vec::with_capacity(n),
+            radius: Vec::with_capacity(n),
+            range: vec![0..0; outside + 1],
+            children: vec![Vec::new(); outside + 1],
+            around: vec![0.0; outside + 1],
+        };
+        // A set is met twice: its own vertices are numbered first, the range is known when all inside is done.
+        let mut stack = vec![(outside, false)];
+        while let Some((k, is_done)) = stack.pop() {
+            if is_done {
+                family.range[k].end = family.vertex.len();
+                family.children[k].extend(inner[k].iter().map(|&child| family.range[child].clone()).collect::<Vec<_>>());
+                continue;
+            }
+            family.around[k] = if k == outside {
+                0.0
+            } else {
+                family.around[index(sets.parent[k])] + blossoms[k].dual
+            };
+            let first = family.vertex.len();
+            family.range[k] = first..n;
+            for &v in &own[k] {
+                family.children[k].push(family.vertex.len()..family.vertex.len() + 1);
+                family.vertex.push(v);
+                family.radius.push(matching.duals()[v] + family.around[k]);
+            }
+            stack.push((k, true));
+            stack.extend(inner[k].iter().map(|&child| (child, false)));
+        }
+        family
+    }
+
+    fn least_slack<M: Metric>(&self, metric: &M, finder: &mut impl Finder) -> f64 {
         let mut least = 0.0_f64;
-        // Radius of every vertex within the sets done so far, and the child it is in.
-        let mut radius = matching.duals().to_vec();
-        let mut child: Vec<usize> = (0..n).collect();
-        let mut by_size: Vec<usize> = (0..matching.blossoms().len()).collect();
-        by_size.sort_by_key(|&k| matching.blossoms()[k].vertices.len());
-        let everything: Vec<usize> = (0..n).collect();
-        for k in by_size.into_iter().map(Some).chain([None]) {
-            let vertices = k.map_or(&everything, |k| &matching.blossoms()[k].vertices);
-            let disks: Vec<Disk> =
-                vertices.iter().map(|&v| Disk { vertex: v, child: child[v], radius: radius[v] }).collect();
-            least = least.min(least_in_set(metric, disks));
-            if let Some(k) = k {
-                for &v in vertices {
-                    radius[v] += matching.blossoms()[k].dual;
-                    child[v] = n + k;
+        for (k, children) in self.children.iter().enumerate() {
+            let largest = (0..children.len()).max_by_key(|&c| children[c].len());
+            for (_, own) in children.iter().enumerate().filter(|&(c, _)| Some(c) != largest) {
+                for number in own.clone() {
+                    let question = Question { number, own, within: &self.range[k], around: self.around[k] };
+                    least = finder.least(self, metric, &question, least);
                 }
+            }
+        }
+        least
+    }
+
+    fn slack(&self, metric: &impl Metric, a: usize, b: usize, around: f64) -> f64 {
+        metric.distance(self.vertex[a], self.vertex[b]) - self.radius[a] - self.radius[b] + 2.0 * around
+    }
+}
+
+/// Which vertices of the range `within`, but not of `own`, have a slack with a vertex below what is known?
+struct Question<'a> {
+    number: usize,
+    own: &'a Range<usize>,
+    within: &'a Range<usize>,
+    around: f64,
+}
+
+impl Question<'_> {
+    fn asks_for(&self, number: usize) -> bool {
+        self.within.contains(&number) && !self.own.contains(&number)
+    }
+}
+
+trait Finder {
+    fn least(&mut self, family: &Family, metric: &impl Metric, question: &Question<'_>, least: f64) -> f64;
+}
+
+struct AllPairs;
+
+impl Finder for AllPairs {
+    fn least(&mut self, family: &Family, metric: &impl Metric, question: &Question<'_>, least: f64) -> f64 {
+        let others = question.within.clone().filter(|&number| question.asks_for(number));
+        others.map(|other| family.slack(metric, question.number, other, question.around)).fold(least, f64::min)
+    }
+}
+
+/// A box of vertices: their coordinates, numbers and greatest radius.
+struct Cell<const D: usize> {
+    low: [f64; D],
+    high: [f64; D],
+    greatest: f64,
+    first: usize,
+    last: usize,
+    /// Positions in the list of numbers.
+    span: Range<usize>,
+    children: Option<[usize; 2]>,
+}
+
+struct Cells<'a, const D: usize> {
+    points: &'a [[f64; D]],
+    cells: Vec<Cell<D>>,
+    numbers: Vec<usize>,
+    stack: Vec<usize>,
+}
+
+impl<'a, const D: usize> Cells<'a, D> {
+    fn new(points: &'a [[f64; D]], family: &Family) -> Self {
+        let mut numbers: Vec<usize> = (0..points.len()).collect();
+        let mut cells: Vec<Cell<D>> = Vec::new();
+        let mut pending = vec![(0..points.len(), None::<(usize, usize)>)];
+        while let Some((span, link)) = pending.pop() {
+            let index = cells.len();
+            if let Some((parent, side)) = link {
+                cells[parent].children.get_or_insert([0; 2])[side] = index;
+            }
+            let part = &mut numbers[span.clone()];
+            let cell = enclose(points, family, part, span.clone());
+            if part.len() > 12 {
+                let width = |k: usize| cell.high[k] - cell.low[k];
+                let axis = (0..D).max_by(|&a, &b| width(a).total_cmp(&width(b))).unwrap_or(0);
+                let coordinate = |number: &usize| points[family.vertex[*number]][axis];
+                let half = part.len() / 2;
+                part.select_nth_unstable_by(half, |a, b| coordinate(a).total_cmp(&coordinate(b)));
+                let middle = span.start + half;
+                pending.extend([(span.start..middle, Some((index, 0))), (middle..span.end, Some((index, 1)))]);
+            }
+            cells.push(cell);
+        }
+        Cells { points, cells, numbers, stack: Vec::new() }
+    }
+}
+
+fn enclose<const D: usize>(points: &[[f64; D]], family: &Family, numbers: &[usize], span: Range<usize>) -> Cell<D> {
+    let (low, high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+    let mut cell = Cell { low, high, greatest: f64::NEG_INFINITY, first: usize::MAX, last: 0, span, children: None };
+    for &number in numbers {
+        let point = &points[family.vertex[number]];
+        for k in 0..D {
+            cell.low[k] = cell.low[k].min(point[k]);
+            cell.high[k] = cell.high[k].max(point[k]);
+        }
+        cell.greatest = cell.greatest.max(family.radius[number]);
+        (cell.first, cell.last) = (cell.first.min(number), cell.last.max(number));
+    }
+    cell
+}
+
+impl<const D: usize> Finder for Cells<'_, D> {
+    fn least(&mut self, family: &Family, metric: &impl Metric, question: &Question<'_>, mut least: f64) -> f64 {
+        let point = &self.points[family.vertex[question.number]];
+        let radius = family.radius[question.number] - 2.0 * question.around;
+        self.stack.push(0);
+        while let Some(index) = self.stack.pop() {
+            let cell = &self.cells[index];
+            let is_outside = cell.last < question.within.start || cell.first >= question.within.end;
+            let is_own = question.own.start <= cell.first && cell.last < question.own.end;
+            if is_outside || is_own || separation(cell, point) - radius - cell.greatest >= least {
+                continue;
+            }
+            if let Some(children) = cell.children {
+                self.stack.extend(children);
+                continue;
+            }
+            for &other in self.numbers[cell.span.clone()].iter().filter(|&&other| question.asks_for(other)) {
+                least = least.min(family.slack(metric, question.number, other, question.around));
             }
         }
         least
     }
 }
 
-#[derive(Clone, Copy)]
-struct Disk {
-    vertex: usize,
-    child: usize,
-    radius: f64,
-}
-
-fn least_in_set(metric: &impl Metric, mut disks: Vec<Disk>) -> f64 {
-    match metric.geometry() {
-        Geometry::Planar(points) if disks.len() >= BOXES_FROM => least_by_boxes(metric, points, &mut disks),
-        Geometry::Spatial(points) if disks.len() >= BOXES_FROM => least_by_boxes(metric, points, &mut disks),
-        _ => least_of_pairs(metric, &disks, &disks),
-    }
-}
-
-fn least_of_pairs(metric: &impl Metric, these: &[Disk], those: &[Disk]) -> f64 {
-    let mut least = 0.0_f64;
-    for a in these {
-        for b in those.iter().filter(|b| b.child != a.child) {
-            least = least.min(metric.distance(a.vertex, b.vertex) - a.radius - b.radius);
-        }
-    }
-    least
-}
-
-/// A box of disks: pairs of boxes that are far apart, or that lie in one child, need no look inside.
-struct Cell<const D: usize> {
-    low: [f64; D],
-    high: [f64; D],
-    greatest: f64,
-    child: Option<usize>,
-    begin: usize,
-    end: usize,
-    children: Option<[usize; 2]>,
-}
-
-fn least_by_boxes<const D: usize>(metric: &impl Metric, points: &[[f64; D]], disks: &mut [Disk]) -> f64 {
-    let mut cells: Vec<Cell<D>> = Vec::new();
-    let mut pending = vec![(0, disks.len(), None::<(usize, usize)>)];
-    while let Some((begin, end, link)) = pending.pop() {
-        let index = cells.len();
-        if let Some((parent, side)) = link {
-            cells[parent].children.get_or_insert([0; 2])[side] = index;
-        }
-        let mut cell = enclose(points, &disks[begin..end]);
-        (cell.begin, cell.end) = (begin, end);
-        if end - begin > 16 {
-            let axis =
-                (0..D).max_by(|&a, &b| (cell.high[a] - cell.low[a]).total_cmp(&(cell.high[b] - cell.low[b])));
-            let axis = axis.unwrap_or(0);
-            let middle = (end - begin) / 2;
-            disks[begin..end].select_nth_unstable_by(middle, |a, b| {
-                points[a.vertex][axis].total_cmp(&points[b.vertex][axis])
-            });
-            pending
-                .extend([(begin, begin + middle, Some((index, 0))), (begin + middle, end, Some((index, 1)))]);
-        }
-        cells.push(cell);
-    }
-    let mut least = 0.0_f64;
-    let mut pairs = vec![(0, 0)];
-    while let Some((i, j)) = pairs.pop() {
-        let (a, b) = (&cells[i], &cells[j]);
-        if a.child.is_some() && a.child == b.child || separation(a, b) - a.greatest - b.greatest >= least {
-            continue;
-        }
-        match (a.children, b.children) {
-            (None, None) => {
-                least = least.min(least_of_pairs(metric, &disks[a.begin..a.end], &disks[b.begin..b.end]));
-            }
-            (Some([p, q]), _) if i == j => pairs.extend([(p, p), (p, q), (q, q)]),
-            (Some([p, q]), _) if b.children.is_none() || a.end - a.begin >= b.end - b.begin => {
-                pairs.extend([(p, j), (q, j)]);
-            }
-            (_, Some([p, q])) => pairs.extend([(i, p), (i, q)]),
-            (Some([p, q]), None) => pairs.extend([(p, j), (q, j)]),
-        }
-    }
-    least
-}
-
-fn enclose<const D: usize>(points: &[[f64; D]], disks: &[Disk]) -> Cell<D> {
-    let mut cell = Cell {
-        low: [f64::INFINITY; D],
-        high: [f64::NEG_INFINITY; D],
-        greatest: f64::NEG_INFINITY,
-        child: disks.first().map(|disk| disk.child),
-        begin: 0,
-        end: 0,
-        children: None,
-    };
-    for disk in disks {
-        for k in 0..D {
-            cell.low[k] = cell.low[k].min(points[disk.vertex][k]);
-            cell.high[k] = cell.high[k].max(points[disk.vertex][k]);
-        }
-        cell.greatest = cell.greatest.max(disk.radius);
-        cell.child = cell.child.filter(|&child| child == disk.child);
-    }
-    cell
-}
-
-/// A lower bound on the distance between points of two boxes, the last digits given away.
-fn separation<const D: usize>(a: &Cell<D>, b: &Cell<D>) -> f64 {
-    let gap = |k: usize| (a.low[k] - b.high[k]).max(b.low[k] - a.high[k]).max(0.0);
+/// A lower bound on the distance from a point to those of a box, the last digits given away.
+fn separation<const D: usize>(cell: &Cell<D>, point: &[f64; D]) -> f64 {
+    let gap = |k: usize| (cell.low[k] - point[k]).max(point[k] - cell.high[k]).max(0.0);
     (0..D).map(|k| gap(k) * gap(k)).sum::<f64>().sqrt() * (1.0 - 1e-14)
 }
