@@ -36,13 +36,14 @@ impl Certificate {
 /// Checks feasibility and complementary slackness of the duals on the complete graph of `metric`.
 ///
 /// # Complexity
-/// `O(n log^2 n)` typically for points, else `O(n^2)`; the sets are read in time of their total size.
+/// `O(n log^2 n)` typically for points, else `O(n^2)`.
 #[must_use]
 pub fn certificate(metric: &impl Metric, matching: &Matching) -> Certificate {
     let n = metric.len();
-    let sets = Sets::new(matching);
-    let is_consistent = is_perfect(n, matching.mates()) && sets.is_some();
-    let Some(sets) = sets.filter(|_| is_consistent) else {
+    let sets = if is_perfect(n, matching.mates()) { Sets::new(matching) } else { None };
+    let nested = sets.map(|sets| (Family::new(&sets, matching), sets));
+    let Some((family, sets)) = nested.filter(|(family, sets)| sets.are_left_once(family, matching.mates()))
+    else {
         let (least_slack, greatest_matched_slack) = (f64::NEG_INFINITY, f64::INFINITY);
         let (weight, lower_bound) = (f64::INFINITY, f64::NEG_INFINITY);
         return Certificate {
@@ -53,25 +54,25 @@ pub fn certificate(metric: &impl Metric, matching: &Matching) -> Certificate {
             lower_bound,
         };
     };
-    let least_slack = sets.least_slack(metric, matching);
+    let least_slack = least_slack(&family, metric);
     let (mut weight, mut greatest_matched_slack) = (0.0, f64::NEG_INFINITY);
     for (u, v) in matching.edges() {
         weight += metric.distance(u, v);
-        greatest_matched_slack = greatest_matched_slack.max(sets.slack(metric, matching, u, v));
+        greatest_matched_slack = greatest_matched_slack.max(sets.slack(&family, metric, matching, u, v));
     }
     let duals = || matching.duals().iter().copied().chain(matching.blossoms().iter().map(|b| b.dual));
     let objective: f64 = duals().sum();
     let magnitude: f64 = duals().map(f64::abs).sum();
     let rounding = magnitude * (n as f64 + 4.0) * f64::EPSILON;
     let lower_bound = objective + n as f64 / 2.0 * least_slack - rounding;
-    Certificate { is_consistent, least_slack, greatest_matched_slack, weight, lower_bound }
+    Certificate { is_consistent: true, least_slack, greatest_matched_slack, weight, lower_bound }
 }
 
 fn is_perfect(n: usize, mates: &[usize]) -> bool {
     mates.len() == n && mates.iter().enumerate().all(|(u, &v)| v != u && mates.get(v) == Some(&u))
 }
 
-/// The nesting of the blossoms, from the lists of their vertices alone.
+/// The nesting of the blossoms.
 struct Sets {
     /// The smallest blossom around every blossom.
     parent: Vec<usize>,
@@ -82,71 +83,68 @@ struct Sets {
 const OUTSIDE: usize = usize::MAX;
 
 impl Sets {
-    /// The nesting, unless the blossoms are no odd laminar family with one matched edge leaving each.
+    /// The nesting, unless the blossoms are no odd laminar family of non-negative duals.
     fn new(matching: &Matching) -> Option<Sets> {
         let (n, blossoms) = (matching.mates().len(), matching.blossoms());
-        if matching.duals().len() != n {
-            return None;
-        }
-        let mut parent = vec![OUTSIDE; blossoms.len()];
         let mut innermost = vec![OUTSIDE; n];
-        // The outermost of the sets seen so far around every vertex; sets come in order of size.
-        let mut outermost = vec![OUTSIDE; n];
-        let mut by_size: Vec<usize> = (0..blossoms.len()).collect();
-        by_size.sort_by_key(|&k| blossoms[k].vertices.len());
-        for k in by_size {
-            let vertices = &blossoms[k].vertices;
-            let mut covered = 0;
-            for &v in vertices {
-                let inner = *outermost.get(v)?;
-                if inner == k {
+        let mut parent = vec![OUTSIDE; blossoms.len()];
+        let mut size = vec![0; blossoms.len()];
+        for (k, blossom) in blossoms.iter().enumerate() {
+            for &v in &blossom.vertices {
+                let slot = innermost.get_mut(v)?;
+                if std::mem::replace(slot, k) != OUTSIDE {
                     return None;
                 }
-                if inner == OUTSIDE {
-                    innermost[v] = k;
-                } else if parent[inner] == OUTSIDE {
-                    parent[inner] = k;
-                    covered += blossoms[inner].vertices.len();
-                } else if parent[inner] != k {
-                    return None;
-                }
-                outermost[v] = k;
             }
-            let direct = vertices.iter().filter(|&&v| innermost[v] == k).count();
-            let leaving =
-                vertices.iter().filter(|&&v| outermost.get(matching.mates()[v]) != Some(&k)).count();
-            let is_odd = vertices.len() % 2 == 1;
-            if covered + direct != vertices.len() || leaving != 1 || !is_odd || blossoms[k].dual < 0.0 {
+            size[k] += blossom.vertices.len();
+            // Parents come later, so that the nesting cannot be circular.
+            if let Some(around) = blossom.parent {
+                if around <= k || around >= blossoms.len() {
+                    return None;
+                }
+                parent[k] = around;
+                size[around] += size[k];
+            }
+            if size[k] % 2 == 0 || blossom.dual < 0.0 || blossom.dual.is_nan() {
                 return None;
             }
         }
-        Some(Sets { parent, innermost })
+        (matching.duals().len() == n).then_some(Sets { parent, innermost })
     }
 
-    /// The slack of one pair, by walking outwards from both vertices.
-    fn slack(&self, metric: &impl Metric, matching: &Matching, u: usize, v: usize) -> f64 {
-        let around = |vertex: usize| {
-            let outward = |&k: &usize| (self.parent[k] != OUTSIDE).then(|| self.parent[k]);
-            let first = (self.innermost[vertex] != OUTSIDE).then(|| self.innermost[vertex]);
-            std::iter::successors(first, outward)
-        };
-        let dual = |k: usize| matching.blossoms()[k].dual;
-        let separate =
-            |a: usize, b: usize| around(a).filter(|&k| around(b).all(|j| j != k)).map(dual).sum::<f64>();
-        metric.distance(u, v) - matching.duals()[u] - matching.duals()[v] - separate(u, v) - separate(v, u)
+    /// The blossoms that hold `u` but not `v`, inner ones first.
+    fn left<'a>(&'a self, family: &'a Family, u: usize, v: usize) -> impl Iterator<Item = usize> + 'a {
+        let existing = |k: usize| (k != OUTSIDE).then_some(k);
+        let outward = std::iter::successors(existing(self.innermost[u]), move |&k| existing(self.parent[k]));
+        outward.take_while(move |&k| !family.range[k].contains(&family.number[v]))
     }
 
-    /// The least slack of all pairs, at most zero.
-    ///
-    /// Each set is searched for pairs from different children. Of each such pair at least one vertex is outside the
-    /// largest child; so only the others ask, and a vertex asks `O(log n)` times.
-    fn least_slack(&self, metric: &impl Metric, matching: &Matching) -> f64 {
-        let family = Family::new(self, matching);
-        match metric.geometry() {
-            Geometry::Planar(points) => family.least_slack(metric, &mut Cells::new(points, &family)),
-            Geometry::Spatial(points) => family.least_slack(metric, &mut Cells::new(points, &family)),
-            Geometry::Abstract => family.least_slack(metric, &mut AllPairs),
+    /// Whether exactly one matched edge leaves each blossom.
+    fn are_left_once(&self, family: &Family, mates: &[usize]) -> bool {
+        let mut n_leaving = vec![0; self.parent.len()];
+        for (u, &v) in mates.iter().enumerate() {
+            self.left(family, u, v).for_each(|k| n_leaving[k] += 1);
         }
+        n_leaving.iter().all(|&count| count == 1)
+    }
+
+    /// The slack of one pair.
+    fn slack(&self, family: &Family, metric: &impl Metric, matching: &Matching, u: usize, v: usize) -> f64 {
+        let blossoms = self.left(family, u, v).chain(self.left(family, v, u));
+        let separating: f64 = blossoms.map(|k| matching.blossoms()[k].dual).sum();
+        metric.distance(u, v) - matching.duals()[u] - matching.duals()[v] - separating
+    }
+}
+
+/// The least slack of all pairs, at most zero.
+///
+/// Each set is searched for pairs from different children. Of each such pair at least one vertex is outside the largest
+/// child; so only the others ask, and a vertex asks `O(log n)` times.
+fn least_slack(family: &Family, metric: &impl Metric) -> f64 {
+    match metric.geometry() {
+        Geometry::Planar(points) => family.least_slack(metric, &mut Cells::new(points, family)),
+        Geometry::Spatial(points) => family.least_slack(metric, &mut Cells::new(points, family)),
+        Geometry::Abstract => family.least_slack(metric, &mut AllPairs),
     }
 }
 
@@ -154,6 +152,8 @@ impl Sets {
 struct Family {
     /// Vertex of every number.
     vertex: Vec<usize>,
+    /// Number of every vertex.
+    number: Vec<usize>,
     /// Sum of the duals of the vertex and of all blossoms around it, by number.
     radius: Vec<f64>,
     /// Range of every blossom, then of all vertices.
@@ -175,6 +175,7 @@ impl Family {
         sets.innermost.iter().enumerate().for_each(|(v, &k)| own[index(k)].push(v));
         let mut family = Family {
             vertex: Vec::with_capacity(n),
+            number: vec![0; n],
             radius: Vec::with_capacity(n),
             range: vec![0..0; outside + 1],
             children: vec![Vec::new(); outside + 1],
@@ -185,18 +186,17 @@ impl Family {
         while let Some((k, is_done)) = stack.pop() {
             if is_done {
                 family.range[k].end = family.vertex.len();
-                family.children[k].extend(inner[k].iter().map(|&child| family.range[child].clone()).collect::<Vec<_>>());
+                family.children[k]
+                    .extend(inner[k].iter().map(|&child| family.range[child].clone()).collect::<Vec<_>>());
                 continue;
             }
-            family.around[k] = if k == outside {
-                0.0
-            } else {
-                family.around[index(sets.parent[k])] + blossoms[k].dual
-            };
+            family.around[k] =
+                if k == outside { 0.0 } else { family.around[index(sets.parent[k])] + blossoms[k].dual };
             let first = family.vertex.len();
             family.range[k] = first..n;
             for &v in &own[k] {
                 family.children[k].push(family.vertex.len()..family.vertex.len() + 1);
+                family.number[v] = family.vertex.len();
                 family.vertex.push(v);
                 family.radius.push(matching.duals()[v] + family.around[k]);
             }
@@ -248,7 +248,9 @@ struct AllPairs;
 impl Finder for AllPairs {
     fn least(&mut self, family: &Family, metric: &impl Metric, question: &Question<'_>, least: f64) -> f64 {
         let others = question.within.clone().filter(|&number| question.asks_for(number));
-        others.map(|other| family.slack(metric, question.number, other, question.around)).fold(least, f64::min)
+        others
+            .map(|other| family.slack(metric, question.number, other, question.around))
+            .fold(least, f64::min)
     }
 }
 
@@ -290,7 +292,8 @@ impl<'a, const D: usize> Cells<'a, D> {
                 let half = part.len() / 2;
                 part.select_nth_unstable_by(half, |a, b| coordinate(a).total_cmp(&coordinate(b)));
                 let middle = span.start + half;
-                pending.extend([(span.start..middle, Some((index, 0))), (middle..span.end, Some((index, 1)))]);
+                pending
+                    .extend([(span.start..middle, Some((index, 0))), (middle..span.end, Some((index, 1)))]);
             }
             cells.push(cell);
         }
@@ -298,9 +301,15 @@ impl<'a, const D: usize> Cells<'a, D> {
     }
 }
 
-fn enclose<const D: usize>(points: &[[f64; D]], family: &Family, numbers: &[usize], span: Range<usize>) -> Cell<D> {
+fn enclose<const D: usize>(
+    points: &[[f64; D]],
+    family: &Family,
+    numbers: &[usize],
+    span: Range<usize>,
+) -> Cell<D> {
     let (low, high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-    let mut cell = Cell { low, high, greatest: f64::NEG_INFINITY, first: usize::MAX, last: 0, span, children: None };
+    let mut cell =
+        Cell { low, high, greatest: f64::NEG_INFINITY, first: usize::MAX, last: 0, span, children: None };
     for &number in numbers {
         let point = &points[family.vertex[number]];
         for k in 0..D {
@@ -314,7 +323,13 @@ fn enclose<const D: usize>(points: &[[f64; D]], family: &Family, numbers: &[usiz
 }
 
 impl<const D: usize> Finder for Cells<'_, D> {
-    fn least(&mut self, family: &Family, metric: &impl Metric, question: &Question<'_>, mut least: f64) -> f64 {
+    fn least(
+        &mut self,
+        family: &Family,
+        metric: &impl Metric,
+        question: &Question<'_>,
+        mut least: f64,
+    ) -> f64 {
         let point = &self.points[family.vertex[question.number]];
         let radius = family.radius[question.number] - 2.0 * question.around;
         self.stack.push(0);

@@ -20,7 +20,6 @@ pub struct Matching {
     pub(crate) error_bound: f64,
     pub(crate) duals: Vec<f64>,
     pub(crate) blossoms: Vec<Blossom>,
-    pub(crate) innermost: Vec<Option<usize>>,
 }
 
 impl Matching {
@@ -157,14 +156,13 @@ impl Solver {
     fn export(&mut self, scale: Scale) -> Matching {
         self.forest.match_inside();
         let n = self.forest.n_vertices();
-        let (blossoms, innermost) = self.forest.export(scale);
+        let blossoms = self.forest.export(scale);
         Matching {
             mates: (0..n).map(|v| self.forest.nodes[v].mate.outer as usize).collect(),
             weight: 0.0,
             error_bound: scale.error_bound(n),
             duals: (0..n).map(|v| scale.real(self.forest.nodes[v].dual)).collect(),
             blossoms,
-            innermost,
         }
     }
 }
