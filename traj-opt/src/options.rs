@@ -16,7 +16,7 @@ pub struct Options {
     /// First barrier parameter. Default 0.1 (that of IPOPT).
     pub initial_mu: f64,
     /// How often a solve with free final time that gets stuck far from feasibility is begun again, each time from a guess twice
-    /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. Default 3.
+    /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. Default 6.
     pub time_restarts: usize,
 }
 
@@ -27,7 +27,7 @@ impl Default for Options {
             acceptable_tolerance: 1e-6,
             max_iterations: 300,
             initial_mu: 0.1,
-            time_restarts: 3,
+            time_restarts: 6,
         }
     }
 }

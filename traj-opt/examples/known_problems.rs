@@ -1,0 +1,65 @@
+//! Solves classic optimal control problems and compares them with their known values.
+//!
+//! `cargo run --release -p traj-opt --example known_problems [NAME] [--json] [--scheme hs|rk|trap] [--segments N]`
+//!
+//! With `--segments` the mesh is uniform and not refined.
+
+#[path = "../tests/known_problems/harness.rs"]
+#[allow(dead_code)]
+mod harness;
+#[path = "../tests/known_problems/problems.rs"]
+mod problems;
+
+use std::time::Instant;
+use traj_opt::Transcription;
+
+fn main() {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let json = args.iter().any(|a| a == "--json");
+    let option = |key: &str| args.iter().position(|a| a == key).and_then(|i| args.get(i + 1)).cloned();
+    let (scheme, segments) = (option("--scheme"), option("--segments"));
+    let fixed: Option<usize> = segments.as_ref().and_then(|n| n.parse().ok());
+    let values = [scheme.as_ref(), segments.as_ref()];
+    let name = args.iter().find(|a| !a.starts_with("--") && !values.contains(&Some(a))).cloned();
+    let transcription = match scheme.as_deref() {
+        Some("rk") => Transcription::RungeKutta { substeps: 2 },
+        Some("trap") => Transcription::Trapezoidal,
+        _ => Transcription::HermiteSimpson,
+    };
+    let tolerance = if transcription == Transcription::HermiteSimpson { 1e-7 } else { 1e-5 };
+    let mut objects = vec![];
+    if !json {
+        println!(
+            "{:26} {:>15} {:>15} {:>9} {:>8} {:>6} {:>9} {:>9}  status",
+            "problem", "value", "reference", "error", "segments", "iter", "ms", "mesh"
+        );
+    }
+    for e in problems::all().iter().filter(|e| name.as_ref().is_none_or(|n| n == e.name)) {
+        let begin = Instant::now();
+        let row = (e.run)(transcription, fixed.unwrap_or(e.segments), fixed.is_none().then_some(tolerance));
+        let ms = begin.elapsed().as_secs_f64() * 1e3;
+        let error = (row.value - e.reference).abs() / e.reference.abs();
+        if json {
+            objects.push(format!(
+                "{{\"name\":\"{}\",\"value\":{},\"reference\":{},\"relative_error\":{:e},\"segments\":{},\"iterations\":{},\"milliseconds\":{ms:.3}}}",
+                e.name, row.value, e.reference, error, row.segments, row.iterations
+            ));
+        } else {
+            println!(
+                "{:26} {:15.8} {:15.8} {:9.1e} {:8} {:6} {:9.2} {:9.1e}  {}",
+                e.name,
+                row.value,
+                e.reference,
+                error,
+                row.segments,
+                row.iterations,
+                ms,
+                row.error,
+                row.status
+            );
+        }
+    }
+    if json {
+        println!("[{}]", objects.join(",\n "));
+    }
+}
