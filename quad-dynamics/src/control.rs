@@ -29,6 +29,9 @@ pub struct Gains {
     pub yaw_frequency: f64,
     /// Damping ratio of yaw. Default 1.
     pub yaw_damping: f64,
+    /// How many times faster than their own lag the rotors are driven towards their thrust, by overshooting commands within
+    /// the limits; 1 for none. Default 3.
+    pub rotor_lead: f64,
 }
 
 impl Default for Gains {
@@ -42,6 +45,7 @@ impl Default for Gains {
             attitude_damping: 0.9,
             yaw_frequency: 4.0,
             yaw_damping: 1.0,
+            rotor_lead: 3.0,
         }
     }
 }
@@ -51,18 +55,24 @@ impl Default for Gains {
 /// T. Lee, M. Leok, N. H. McClamroch, *Geometric tracking control of a quadrotor UAV on SE(3)* (2010, DOI
 /// 10.1109/CDC.2010.5717652), eqs. 12 and 15 to 16: the wanted force
 /// `F = m (a_d + g e_z) + drag - m (w^2 e + 2 z w e' + integral)` gives the thrust `F . z_b` and, with the wanted
-/// heading, the wanted attitude; the torque is `-k_R e_R - k_w e_w + w x J w + J (R^T R_d w_d' - w x R^T R_d w_d)`. Added
-/// here: drag at the wanted velocity, an integral with a limit, rotor limits by [`Mixer::allocate`](crate::Mixer::allocate)
-/// (yaw given up first), and a look ahead for the attitude.
+/// heading, the wanted attitude `R_d`; the torque is
+/// `J (-k_R e_R - k_w e_w + R^T R_d w_d' - w x R^T R_d w_d) + w x J w`.
 ///
-/// Lee's proof (almost global exponential attractiveness) is for unlimited rotors without lag; nothing is proved for this
-/// controller with limits and lag.
+/// Different from Lee: the attitude error is split into that of the thrust direction and that of the heading (D.
+/// Brescianini, M. Hehn, R. D'Andrea 2013). At high thrust no rotor has yaw torque to spare, headings drift by radians,
+/// and Lee's error would then turn the thrust the wrong way. Added: drag, an integral with a limit, rotor limits by
+/// [`Mixer::allocate`](crate::Mixer::allocate) (yaw given up first), a look ahead and a lead for the rotors' lag.
+///
+/// Lee's proof (almost global exponential attractiveness) is for his error, unlimited rotors and no lag; nothing is proved
+/// for this controller.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackingController {
     vehicle: Vehicle,
     gains: Gains,
     /// Integral of the position error times its gain, m/s^2.
     integral: Vector3<f64>,
+    /// Rotor speeds that the lag model expects now, rad/s; unknown before the first call.
+    rotor_speeds: Option<Vector4<f64>>,
     /// Diagonal gains per unit of inertia: attitude (1/s^2) and rates (1/s).
     attitude_gain: Vector3<f64>,
     rate_gain: Vector3<f64>,
@@ -78,14 +88,16 @@ impl TrackingController {
             vehicle: vehicle.clone(),
             gains,
             integral: Vector3::zeros(),
+            rotor_speeds: None,
             attitude_gain: Vector3::new(tilt * tilt, tilt * tilt, yaw * yaw),
             rate_gain: Vector3::new(tilt_rate, tilt_rate, yaw_rate),
         }
     }
 
-    /// Forgets the integral.
+    /// Forgets the integral and what the rotors did.
     pub fn reset(&mut self) {
         self.integral = Vector3::zeros();
+        self.rotor_speeds = None;
     }
 
     /// Rotor thrusts (N, within the rotors' limits) for a measured rigid-body state (p, v, q, w), `step` seconds after the
@@ -115,7 +127,25 @@ impl TrackingController {
         let thrust = force.dot(&rotation.column(2));
         let torque = self.torque(&rotation, &rates, &force, ahead);
         let (min, max) = (self.vehicle.min_rotor_thrust(), self.vehicle.max_rotor_thrust());
-        self.vehicle.mixer().allocate(thrust, &torque, min, max)
+        let wanted = self.vehicle.mixer().allocate(thrust, &torque, min, max);
+        self.lead(&wanted, step)
+    }
+
+    /// Rotor speeds (rad/s) of rotor thrusts.
+    fn speeds(&self, thrusts: &Vector4<f64>) -> Vector4<f64> {
+        thrusts.map(|thrust| (thrust.max(0.0) / self.vehicle.thrust_coefficient()).sqrt())
+    }
+
+    /// Commands that bring lagging rotors to the wanted thrusts sooner.
+    fn lead(&mut self, wanted: &Vector4<f64>, step: f64) -> Vector4<f64> {
+        let target = self.speeds(wanted);
+        let now = self.rotor_speeds.unwrap_or(target);
+        let (min, max) = (self.vehicle.min_rotor_thrust(), self.vehicle.max_rotor_thrust());
+        let limits = self.speeds(&Vector4::new(min, max, 0.0, 0.0));
+        let command = (now + (target - now) * self.gains.rotor_lead).map(|s| s.max(limits[0]).min(limits[1]));
+        let share = 1.0 - (-step / self.vehicle.parameters().propulsion.time_constant).exp();
+        self.rotor_speeds = Some(now + (command - now) * share);
+        command.map(|s| s * s * self.vehicle.thrust_coefficient())
     }
 
     /// Grows the integral and holds it within its limit.
@@ -140,12 +170,7 @@ impl TrackingController {
         let inertia = self.vehicle.inertia_tensor();
         let wanted = wanted_rotation(force, ahead);
         let relative = wanted.transpose() * rotation;
-        // vee((R_d^T R - R^T R_d)/2)
-        let attitude_error = Vector3::new(
-            relative[(2, 1)] - relative[(1, 2)],
-            relative[(0, 2)] - relative[(2, 0)],
-            relative[(1, 0)] - relative[(0, 1)],
-        ) * 0.5;
+        let attitude_error = attitude_error(rotation, &wanted);
         let wanted_rates = relative.tr_mul(&ahead.body_rates);
         let rate_error = rates - wanted_rates;
         let wanted_spin = relative.tr_mul(&ahead.angular_acceleration) - rates.cross(&wanted_rates);
@@ -154,6 +179,24 @@ impl TrackingController {
             - self.rate_gain.component_mul(&rate_error);
         inertia * spin + rates.cross(&(inertia * rates))
     }
+}
+
+/// Error of the thrust direction (about body x and y) and of the heading left after it (about body z), rad.
+///
+/// `R_d` is first turned by the shortest way until its z axis is the body's; what is left is a turn about z.
+fn attitude_error(rotation: &Matrix3<f64>, wanted: &Matrix3<f64>) -> Vector3<f64> {
+    let (z, wanted_z) = (rotation.column(2).into_owned(), wanted.column(2).into_owned());
+    let axis = wanted_z.cross(&z);
+    let (sine, cosine) = (axis.norm(), wanted_z.dot(&z));
+    let angle = sine.atan2(cosine);
+    let tilt = if sine > 0.0 { axis * (angle / sine) } else { Vector3::zeros() };
+    let x = UnitQuaternion::from_scaled_axis(tilt) * wanted.column(0);
+    let y = z.cross(&x);
+    let forward = rotation.column(0);
+    let yaw = forward.dot(&y).atan2(forward.dot(&x));
+    let mut error = rotation.tr_mul(&tilt);
+    error.z = yaw;
+    error
 }
 
 /// The rotation whose z axis is the force's and whose x axis is closest to the wanted heading.
@@ -199,9 +242,15 @@ impl Target {
         }
     }
 
-    /// The first motion, its body rates changing towards the second one `interval` seconds later.
+    /// The middle one of three motions, `interval` seconds from first to last, with the mean body rates and their mean change
+    /// between the outer two: a jump of the rates becomes a ramp.
     #[must_use]
-    pub fn towards(first: &Motion, second: &Motion, interval: f64) -> Self {
-        Self { angular_acceleration: (second.body_rates - first.body_rates) / interval, ..Self::of(first) }
+    pub fn between(before: &Motion, middle: &Motion, after: &Motion, interval: f64) -> Self {
+        let turned = (before.attitude.inverse() * after.attitude).scaled_axis();
+        Self {
+            body_rates: turned / interval,
+            angular_acceleration: (after.body_rates - before.body_rates) / interval,
+            ..Self::of(middle)
+        }
     }
 }

@@ -27,6 +27,8 @@ pub struct SimulationOptions {
     pub gains: Gains,
     /// How far ahead the attitude is taken from the plan, s; it makes up for the rotors' lag. Default 0.05.
     pub look_ahead: f64,
+    /// Time over which jumps of the planned body rates are spread, s: real bodies cannot jump. Default 0.06.
+    pub ramp: f64,
     /// Steady wind, m/s, world. Default none.
     pub wind: Vector3<f64>,
     /// Standard deviations of gusts along the wind, across it and vertical, m/s ([`Dryden`]). Default none.
@@ -43,6 +45,7 @@ impl Default for SimulationOptions {
             step: 0.002,
             gains: Gains::default(),
             look_ahead: 0.05,
+            ramp: 0.06,
             wind: Vector3::zeros(),
             gusts: Vector3::zeros(),
             noise: SensorNoise::default(),
@@ -78,6 +81,13 @@ impl SimulationOptions {
     #[must_use]
     pub fn with_gains(mut self, gains: Gains) -> Self {
         self.gains = gains;
+        self
+    }
+
+    /// The same with jumps of the planned body rates spread over another time, s.
+    #[must_use]
+    pub fn with_ramp(mut self, ramp: f64) -> Self {
+        self.ramp = ramp;
         self
     }
 
@@ -137,6 +147,7 @@ pub fn simulate(
     let record_every = options.record_every.max(1);
     let mut states = Vec::with_capacity(plan.len() / record_every + 1);
     let ahead = (options.look_ahead / step).round().max(0.0) as usize;
+    let half_ramp = (0.5 * options.ramp / step).round().max(1.0) as usize;
     let last = plan.len() - 1;
     let inverse_coefficient = vehicle.thrust_coefficient().recip();
     for (i, now) in plan.iter().enumerate() {
@@ -149,8 +160,10 @@ pub fn simulate(
         if let Some(gusts) = &mut gusts {
             model.set_wind(gusts.advance());
         }
-        let (near, far) = (&plan[(i + ahead).min(last)], &plan[(i + ahead + SPIN_STEPS).min(last)]);
-        let target = Target::towards(near, far, SPIN_STEPS as f64 * step);
+        let centre = i + ahead;
+        let [before, middle, after] =
+            [centre.saturating_sub(half_ramp), centre, centre + half_ramp].map(|k| &plan[k.min(last)]);
+        let target = Target::between(before, middle, after, 2.0 * half_ramp as f64 * step);
         let measured = options.noise.measure(&state, &mut random);
         let thrusts = controller.update(&measured, now, &target, step);
         let speeds = thrusts.map(|thrust| (thrust * inverse_coefficient).sqrt());
@@ -159,9 +172,6 @@ pub fn simulate(
     let tracking = Tracking::new(plan, &states, record_every, step);
     Some(Flight { interval: step * record_every as f64, states, end: state, tracking })
 }
-
-/// Steps over which the change of the planned body rates is taken: plans may jump.
-const SPIN_STEPS: usize = 10;
 
 /// The first motion, rotors turning as it needs them.
 fn at_rest_on(vehicle: &Vehicle, first: &Motion) -> SVector<f64, 17> {
