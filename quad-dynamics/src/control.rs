@@ -8,26 +8,29 @@ use crate::motion::Motion;
 use crate::vehicle::Vehicle;
 
 /// Gains of [`TrackingController`], as natural frequencies and damping ratios, so that they fit vehicles of any size.
+///
+/// The defaults come from a random search over the field mission of `tests/field.rs` (preset `survey-450`, bang-bang
+/// transitions with a thrust budget of 0.9), for the least greatest error in still air; gentler plans allow stiffer loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 #[non_exhaustive]
 pub struct Gains {
-    /// Natural frequency of the position loop, rad/s. Default 3.5.
+    /// Natural frequency of the position loop, rad/s. Default 1.6.
     pub position_frequency: f64,
-    /// Damping ratio of the position loop. Default 0.9.
+    /// Damping ratio of the position loop. Default 1.8.
     pub position_damping: f64,
-    /// Rate at which the position error's integral acts, 1/s; 0 for none. Default 0.6.
+    /// Rate at which the position error's integral acts, 1/s; 0 for none. Default 0.3.
     pub integral_rate: f64,
     /// Greatest acceleration that the integral may ask for, m/s^2. Default 4.
     pub integral_limit: f64,
-    /// Natural frequency of the roll and pitch loop, rad/s. Default 14.
+    /// Natural frequency of the roll and pitch loop, rad/s. Default 9.
     pub attitude_frequency: f64,
-    /// Damping ratio of roll and pitch. Default 0.9.
+    /// Damping ratio of roll and pitch. Default 0.75.
     pub attitude_damping: f64,
-    /// Natural frequency of the yaw loop, rad/s: rotors have little yaw torque. Default 4.
+    /// Natural frequency of the yaw loop, rad/s: rotors have little yaw torque. Default 6.5.
     pub yaw_frequency: f64,
-    /// Damping ratio of yaw. Default 1.
+    /// Damping ratio of yaw. Default 0.6.
     pub yaw_damping: f64,
     /// How many times faster than their own lag the rotors are driven towards their thrust, by overshooting commands within
     /// the limits; 1 for none. Default 3.
@@ -37,14 +40,14 @@ pub struct Gains {
 impl Default for Gains {
     fn default() -> Self {
         Self {
-            position_frequency: 3.5,
-            position_damping: 0.9,
-            integral_rate: 0.6,
+            position_frequency: 1.6,
+            position_damping: 1.8,
+            integral_rate: 0.3,
             integral_limit: 4.0,
-            attitude_frequency: 14.0,
-            attitude_damping: 0.9,
-            yaw_frequency: 4.0,
-            yaw_damping: 1.0,
+            attitude_frequency: 9.0,
+            attitude_damping: 0.75,
+            yaw_frequency: 6.5,
+            yaw_damping: 0.6,
             rotor_lead: 3.0,
         }
     }

@@ -250,4 +250,23 @@ pub enum Error {
         /// Thrust that the budget allows, N.
         budget: f64,
     },
+    /// The thrust vanishes, or points along the axis to the left of the yaw: flat outputs define no attitude here.
+    #[error(
+        "acceleration {acceleration:?} m/s^2 with yaw {yaw} rad defines no attitude: the thrust vanishes or points sideways"
+    )]
+    FlatnessSingular {
+        /// Acceleration, m/s^2, world.
+        acceleration: [f64; 3],
+        /// Yaw, rad.
+        yaw: f64,
+    },
+    /// Body x is vertical and has no yaw.
+    #[error("body x is vertical, so the yaw is not defined")]
+    YawUndefined,
+    /// At a roll of a quarter turn yaw and pitch are one rotation.
+    #[error("a roll of {roll:.6} rad is a quarter turn, where yaw and pitch are not defined separately")]
+    EulerSingular {
+        /// Roll, rad.
+        roll: f64,
+    },
 }
