@@ -1,8 +1,4 @@
-//! The missions beside the program, planned, verified and written.
-//!
-//! Solving every candidate of the whole missions takes minutes in a debug build, so by default they are planned with few
-//! candidate entries on a coarse mesh, the pasture around a few of its targets. `cargo test --release -- --ignored` plans
-//! them as they are.
+//! The missions beside the program, planned, verified and written as they are.
 
 use ground_station::command::{PlanRequest, plan};
 use ground_station::export::plan_json::PlanDocument;
@@ -114,34 +110,6 @@ fn lighter(name: &str, changes: &[(&str, &str)], folder: &Path) -> Result<PathBu
     Ok(file)
 }
 
-#[test]
-fn the_field_light() -> Result<(), Box<dyn Error>> {
-    let home = tempfile::tempdir()?;
-    let changes = [("entries = 16", "entries = 1"), ("segments = 40", "segments = 20")];
-    plan_and_look(lighter("field.toml", &changes, home.path())?, 3)
-}
-
-#[test]
-fn the_field_for_ardupilot_light() -> Result<(), Box<dyn Error>> {
-    let home = tempfile::tempdir()?;
-    let changes = [("entries = 16", "entries = 1"), ("segments = 40", "segments = 20")];
-    plan_and_look(lighter("field-ardupilot.toml", &changes, home.path())?, 3)
-}
-
-/// Four of the hundred targets.
-#[test]
-fn the_pasture_light() -> Result<(), Box<dyn Error>> {
-    let home = tempfile::tempdir()?;
-    let mut points: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(missions().join("pasture.geojson"))?)?;
-    if let Some(features) = points["features"].as_array_mut() {
-        features.truncate(4);
-    }
-    std::fs::write(home.path().join("pasture.geojson"), points.to_string())?;
-    let changes = [("entries = 8", "entries = 1"), ("vehicles = 8", "vehicles = 2")];
-    plan_and_look(lighter("pasture.toml", &changes, home.path())?, 2)
-}
-
 /// The same mission gives the same bytes in every file.
 #[test]
 fn planning_twice_gives_the_same_files() -> Result<(), Box<dyn Error>> {
@@ -166,19 +134,16 @@ fn planning_twice_gives_the_same_files() -> Result<(), Box<dyn Error>> {
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn the_field() -> Result<(), Box<dyn Error>> {
     plan_and_look(missions().join("field.toml"), 3)
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn the_field_for_ardupilot() -> Result<(), Box<dyn Error>> {
     plan_and_look(missions().join("field-ardupilot.toml"), 3)
 }
 
 #[test]
-#[ignore = "takes many minutes"]
 fn the_pasture() -> Result<(), Box<dyn Error>> {
     plan_and_look(missions().join("pasture.toml"), 8)
 }

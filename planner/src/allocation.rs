@@ -42,12 +42,10 @@ pub(crate) fn routes(
     let slowest = orbits.iter().map(|orbit| orbit.circle.speed).fold(f64::INFINITY, f64::min);
     let time = |length: f64| envelope.least_time(length, slowest, slowest);
     let length = |length: f64| length;
-    let (cost, service): (&dyn Fn(f64) -> f64, fn(&Orbit) -> f64) = match mission.pipeline {
-        Pipeline::Paper => (&length, |orbit| orbit.circle.sweep * orbit.circle.radius),
-        Pipeline::Optimised => (&time, |orbit| orbit.circle.duration),
-    };
-    let legs = Legs { nodes: &nodes, cost };
-    let service = std::iter::once(0.0).chain(orbits.iter().map(service)).collect();
+    let by_length = mission.pipeline == Pipeline::Paper;
+    let legs = Legs { nodes: &nodes, cost: if by_length { &length } else { &time } };
+    let around = |orbit: &Orbit| if by_length { orbit.loiter.length() } else { orbit.loiter.duration() };
+    let service = std::iter::once(0.0).chain(orbits.iter().map(around)).collect();
     let problem = Problem::new(&legs, mission.fleet.vehicles)?.with_service(service)?;
     let solution = match mission.pipeline {
         Pipeline::Paper => {

@@ -219,17 +219,19 @@ impl Verification {
         let LegCheck { miss, bound_violation, clearance, .. } = check;
         self.legs.push(check);
         let allowed = &tolerances.miss;
-        // Written so that NaN fails.
+        // Comparisons that NaN fails.
         let hit = miss.position <= allowed.position
             && miss.velocity <= allowed.velocity
             && miss.attitude <= allowed.attitude;
         if !hit {
             self.failures.push(Failure::Miss { vehicle, leg, miss });
         }
-        if !(bound_violation <= tolerances.bound) {
+        let bounded = bound_violation <= tolerances.bound;
+        if !bounded {
             self.failures.push(Failure::Bound { vehicle, leg, violation: bound_violation });
         }
-        if !(clearance >= -tolerances.bound) {
+        let clear = clearance >= -tolerances.bound;
+        if !clear {
             self.failures.push(Failure::Clearance { vehicle, leg, clearance });
         }
     }

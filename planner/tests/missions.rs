@@ -104,7 +104,9 @@ fn trajectories_are_continuous_from_pad_to_pad() {
     for (vehicle, planned) in plan.vehicles.iter().enumerate() {
         let samples = plan.samples(&mission, vehicle, 50.0).unwrap();
         let (first, last) = (samples[0], samples[samples.len() - 1]);
-        assert!((first.time - planned.start_time()).abs() < 1e-9 && (last.time - planned.end_time()).abs() < 1e-9);
+        assert!(
+            (first.time - planned.start_time()).abs() < 1e-9 && (last.time - planned.end_time()).abs() < 1e-9
+        );
         for axis in 0..3 {
             assert!((first.position[axis] - planned.pad[axis]).abs() < 1e-9);
             assert!((last.position[axis] - planned.pad[axis]).abs() < 0.05);

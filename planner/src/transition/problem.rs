@@ -81,6 +81,10 @@ impl<const NX: usize, const NU: usize, F: Flight<NX, NU>> Problem<NX, NU> for Mi
         self.flight
     }
 
+    fn is_autonomous(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Bounds<NX, NU> {
         let (least, greatest) = self.flight.control_bounds();
         let (mut lower, mut upper) = self.flight.state_bounds();
