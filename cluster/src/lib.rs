@@ -12,6 +12,8 @@
 //! | wanted | function |
 //! |---|---|
 //! | `k` compact clusters | [`kmeans`], [`kmeans_weighted`] |
+//! | `k` clusters of limited or equal size | [`balanced_kmeans`], [`equal_shares`] |
+//! | a clustering kept current while points come and go | [`Online`] |
 //! | a hierarchy (single, complete, average, Ward) | [`linkage()`], [`linkage_condensed`], [`Dendrogram::cut`] |
 //! | a hierarchy in linear memory | [`clink`] |
 //! | close points merged, no cluster wider than a diameter | [`merge_within`] |
@@ -47,15 +49,19 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod balanced;
 mod enclosing;
 mod error;
 mod geometry;
 mod kmeans;
 mod labels;
 mod linkage;
+mod online;
 mod tree;
 
+pub use balanced::{Balanced, balanced_kmeans, equal_shares};
 pub use enclosing::{Ball, smallest_enclosing_ball, smallest_enclosing_circle, smallest_enclosing_sphere};
 pub use error::{Error, OptionName};
 pub use kmeans::{KMeans, KMeansOptions, KMeansStatus, kmeans, kmeans_weighted};
 pub use linkage::{Dendrogram, Linkage, Partition, Step, clink, linkage, linkage_condensed, merge_within};
+pub use online::Online;

@@ -10,20 +10,38 @@ use super::options::Options;
 use super::random::Random;
 use super::state::State;
 
-/// Solutions kept, annealings that fit the horizon, and the temperatures at which new solutions and children start, in mean arcs.
+/// Most solutions kept, most annealings in the horizon, and the iterations that each of fewer gets.
 const KEPT: usize = 8;
 const ANNEALINGS: u64 = 24;
+const STRETCH: u64 = 40_000;
+
+/// Temperatures in mean arcs: of new solutions, of new ones when there is time for a few only, and of children.
 const HOT: f64 = 3.0;
+const HURRIED: f64 = 0.5;
 const WARM: f64 = 0.1;
 
-/// Shortest annealing worth the name, in iterations.
-const SHORTEST: u64 = 2_000;
+/// How a horizon is divided.
+struct Schedule {
+    stretch: u64,
+    kept: usize,
+    hot: f64,
+}
+
+impl Schedule {
+    fn new(options: &Options) -> Self {
+        let horizon = options.horizon.unwrap_or(options.iterations).min(options.iterations).max(1);
+        let annealings = (horizon / STRETCH).clamp(1, ANNEALINGS);
+        let hot = if annealings < 4 { HURRIED } else { HOT };
+        let kept = (annealings as usize / 2).clamp(2, KEPT);
+        Self { stretch: horizon / annealings, kept, hot }
+    }
+}
 
 /// Relative difference in value below which two solutions count as the same one.
 const ALIKE: f64 = 1e-7;
 
 /// Powers of the energy, as exponents of 2: 16 to 128. No single one is best on all instances.
-const POWERS: [u32; 4] = [4, 5, 6, 7];
+const POWERS: [u32; 4] = [6, 5, 7, 4];
 
 struct Member {
     value: Value,
@@ -37,32 +55,32 @@ pub(crate) fn evolve<A: Arcs>(
     options: &Options,
     clock: &mut Clock<'_>,
 ) {
-    let horizon = options.horizon.unwrap_or(options.iterations).min(options.iterations);
-    let stretch = (horizon / ANNEALINGS).max(SHORTEST);
+    let schedule = Schedule::new(options);
     let mut annealer = Annealer::new(setting, Random::new(options.seed), state);
     let start = state.lists();
     let mut best = Member { value: setting.value(state), routes: start.clone() };
     clock.note(state);
-    let mut pool: Vec<Member> = Vec::with_capacity(KEPT + 1);
+    let mut pool: Vec<Member> = Vec::with_capacity(schedule.kept + 1);
+    let mut round = 0;
     while !clock.stopped && !setting.is_good_enough(best.value) {
-        let squarings = POWERS[annealer.random.below(POWERS.len())];
-        annealer.energy.set_squarings(squarings);
-        if pool.len() < KEPT {
+        annealer.energy.set_squarings(POWERS[round % POWERS.len()]);
+        round += 1;
+        if pool.len() < schedule.kept {
             *state = if pool.len().is_multiple_of(2) {
                 State::new(state.n, &start, setting.arcs)
             } else {
                 scratch(&mut annealer, state.n, setting.limits.len())
             };
-            annealer.run(state, stretch, HOT, best.value, clock);
+            annealer.run(state, schedule.stretch, schedule.hot, best.value, clock);
         } else {
             *state = child(&mut annealer, &pool, state.n);
-            annealer.run(state, stretch, WARM, best.value, clock);
+            annealer.run(state, schedule.stretch, WARM, best.value, clock);
         }
         let member = Member { value: setting.value(state), routes: state.lists() };
         if better(member.value, best.value) {
             best = Member { value: member.value, routes: member.routes.clone() };
         }
-        admit(&mut pool, member);
+        admit(&mut pool, member, schedule.kept);
     }
     *state = State::new(state.n, &best.routes, setting.arcs);
     clock.note(state);
@@ -80,7 +98,7 @@ fn scratch<A: Arcs>(annealer: &mut Annealer<'_, A>, n: usize, vehicles: usize) -
 }
 
 /// Adds a member; beyond the size kept, drops one that is alike or else the worst.
-fn admit(pool: &mut Vec<Member>, member: Member) {
+fn admit(pool: &mut Vec<Member>, member: Member, kept: usize) {
     let alike = |m: &Member| {
         let same = |a: f64, b: f64| (a - b).abs() <= ALIKE * b.abs();
         same(m.value.0, member.value.0) && same(m.value.1, member.value.1)
@@ -91,12 +109,12 @@ fn admit(pool: &mut Vec<Member>, member: Member) {
             return;
         }
         // While the pool fills, twins count, so that filling ends.
-        if pool.len() == KEPT {
+        if pool.len() == kept {
             return;
         }
     }
     pool.push(member);
-    if pool.len() > KEPT {
+    if pool.len() > kept {
         let worst = (1..pool.len()).fold(0, |w, i| if better(pool[w].value, pool[i].value) { i } else { w });
         pool.swap_remove(worst);
     }
