@@ -1,0 +1,55 @@
+//! The paper's pipeline, lower bounds, search and replanning on 100 targets with 8 vehicles.
+#![allow(missing_docs)]
+
+use christofides::Points;
+use cluster::{KMeansOptions, kmeans};
+use criterion::{Criterion, criterion_group, criterion_main};
+use mtsp::{Absorb, Fleet, Options, Problem, Revisit, assign, lower_bound, solve};
+use std::hint::black_box;
+
+/// The depot at the origin, and uniform points in a square of 2000 m.
+fn nodes(n: usize) -> Vec<[f64; 2]> {
+    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut draw = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        2000.0 * (state >> 11) as f64 / (1u64 << 53) as f64 - 1000.0
+    };
+    let mut nodes = vec![[0.0, 0.0]];
+    nodes.extend((0..n).map(|_| [draw(), draw()]));
+    nodes
+}
+
+fn bench(c: &mut Criterion) {
+    let nodes = nodes(100);
+    let metric = Points(&nodes);
+    let Ok(problem) = Problem::new(&metric, 8) else { return };
+    let Ok(clusters) = kmeans(&nodes[1..], 8, &KMeansOptions::default()) else { return };
+    c.bench_function("mtsp/assign/n100-m8", |b| b.iter(|| assign(black_box(&problem), &clusters.labels)));
+    c.bench_function("mtsp/lower_bound/n100-m8", |b| b.iter(|| lower_bound::both(black_box(&problem))));
+    let mut group = c.benchmark_group("mtsp/search");
+    group.sample_size(10);
+    let options = Options::default().with_iterations(50_000);
+    group.bench_function("solve-50000/n100-m8", |b| b.iter(|| solve(black_box(&problem), &options)));
+    group.finish();
+    let mut fleet = Fleet::new(Revisit::All, Absorb::NearestCluster);
+    for _ in 0..8 {
+        let _ = fleet.join([0.0, 0.0]);
+    }
+    for &target in &nodes[1..] {
+        let _ = fleet.appear(target);
+    }
+    c.bench_function("mtsp/replan-one-of-100", |b| {
+        b.iter_batched_ref(
+            || fleet.clone(),
+            |fleet| {
+                let _ = fleet.appear(black_box([123.0, -456.0]));
+                let owner = fleet.vehicles().max_by_key(|v| fleet.cluster(*v).map_or(0, <[_]>::len));
+                owner.map(|v| fleet.retour(v))
+            },
+            criterion::BatchSize::SmallInput,
+        );
+    });
+}
+
+criterion_group!(benches, bench);
+criterion_main!(benches);
