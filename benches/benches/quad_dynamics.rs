@@ -14,7 +14,9 @@ fn models(c: &mut Criterion) {
     let mut group = c.benchmark_group("quad_dynamics");
     let rigid = RigidBody::new(&vehicle);
     let (x, u) = (motion.rigid_body_state(), motion.rotor_thrusts);
-    group.bench_function("derivative/rigid_body", |b| b.iter(|| rigid.derivative(black_box(&x), black_box(&u))));
+    group.bench_function("derivative/rigid_body", |b| {
+        b.iter(|| rigid.derivative(black_box(&x), black_box(&u)))
+    });
     group.bench_function("jacobian/rigid_body", |b| b.iter(|| rigid.jacobian(black_box(&x), black_box(&u))));
     let thrust_rate = ThrustRate::new(&vehicle);
     let (x, u) = (motion.thrust_rate_state(), motion.thrust_rate_control());

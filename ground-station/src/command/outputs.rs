@@ -73,9 +73,16 @@ fn autopilot_mission(
     let mission = qgc_mission(&vehicle_mission(file, plan, vehicle), file.autopilot, &origin);
     let name = format!("vehicle-{}.plan", index + 1);
     notes.add(&name, mission.notes);
+    if plan.vehicles.iter().filter(|vehicle| !vehicle.legs.is_empty()).count() > 1 {
+        notes.add(&name, vec![TIMES_NOT_KEPT.to_owned()]);
+    }
     let content = mission.plan.to_text().map_err(|source| Failure::Format { source })?;
     Ok(Some(OutputFile { name, content }))
 }
+
+/// What holds for every `.plan` file of a team.
+const TIMES_NOT_KEPT: &str = "the file holds no times: flown as it is, neither the planned take-off times nor the separation \
+                              of the vehicles is kept; let them fly one after the other, or stream the trajectories";
 
 /// Notes on files, each said once with the files that it is about.
 #[derive(Debug, Default)]
