@@ -105,6 +105,7 @@ pub mod loiter;
 mod mixer;
 pub mod models;
 mod motion;
+mod parameters;
 mod presets;
 mod rk4;
 mod series;
@@ -126,7 +127,8 @@ pub use loiter::{CameraLimit, Limit, Loiter, LoiterSpec, LoiterYaw, WindyLoiter,
 pub use mixer::Mixer;
 pub use models::{Jacobian, JerkLimited, PointMass, RigidBody, RotorLag, ThrustRate};
 pub use motion::Motion;
+pub use parameters::{Rotor, Spin, VehicleParameters};
 pub use rk4::{rk4, rk4_step, rk4_step_unit};
 pub use shaping::ShapingLimits;
 pub use simulation::{Flight, SimulationOptions, Tracking, simulate, simulate_batch};
-pub use vehicle::{Rotor, Spin, Vehicle, VehicleParameters};
+pub use vehicle::Vehicle;

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix4, Vector3, Vector4};
 
 use crate::error::Error;
-use crate::vehicle::Rotor;
+use crate::parameters::Rotor;
 
 /// Linear map between four rotor thrusts and (collective thrust, torque).
 ///

@@ -2,7 +2,8 @@
 
 use crate::equipment::{Aerodynamics, Battery, Propulsion};
 use crate::error::Error;
-use crate::vehicle::{Rotor, Spin, Vehicle, VehicleParameters, diagonal};
+use crate::parameters::{Rotor, Spin, VehicleParameters, diagonal};
+use crate::vehicle::Vehicle;
 
 impl VehicleParameters {
     /// Names that [`VehicleParameters::preset`] knows.

@@ -8,6 +8,7 @@ Physics switched on in both: gravity, thrust, torques, first-order rotor lag, pa
 Off in both (or absent): translational lift, flapping, motor noise, ground.
 """
 
+import pathlib
 import sys
 import time
 
@@ -54,9 +55,11 @@ def main():
     theirs = np.array(rows)
     mine = np.column_stack([ours[n] for n in ("x", "y", "z", "vx", "vy", "vz")])
     distance = np.linalg.norm(theirs[:, :3] - mine[:, :3], axis=1)
-    print(f"flown: {np.linalg.norm(theirs[-1, :3]):.2f} m away, {np.linalg.norm(theirs[-1, 3:]):.2f} m/s after {t:.1f} s")
-    print(f"greatest position difference: {distance.max():.3e} m")
-    print(f"greatest velocity difference: {np.abs(theirs[:, 3:] - mine[:, 3:]).max():.3e} m/s")
+    rows = [
+        ("distance flown to the end", f"{np.linalg.norm(theirs[-1, :3]):.2f} m in {t:.1f} s"),
+        ("greatest difference in position", f"{distance.max():.1e} m"),
+        ("greatest difference in velocity", f"{np.abs(theirs[:, 3:] - mine[:, 3:]).max():.1e} m/s"),
+    ]
 
     # Rate with RotorPy's own default integrator settings at 500 Hz, dynamics only.
     vehicle = Multirotor(PARAMS, state)
@@ -65,7 +68,21 @@ def main():
     for _ in range(n):
         state = vehicle.step(state, {"cmd_motor_speeds": np.full(4, hover)}, 0.002)
     seconds = time.perf_counter() - begin
-    print(f"RotorPy, dynamics only at 500 Hz: {n / seconds:.0f} steps/s, {n * 0.002 / seconds:.2f} x real time")
+    rate = f"{n / seconds:.0f} steps/s, {n * 0.002 / seconds:.2f} times real time"
+    rows.append(("RotorPy 2.1.3, dynamics alone at 500 Hz", rate))
+    table = "".join(f"| {name} | {value} |\n" for name, value in rows)
+    write("| open-loop rotor commands, preset `hummingbird` | ours against RotorPy |\n|---|---|\n" + table)
+
+
+def write(table):
+    """Prints the table and puts it between its marks in RESULTS.md, if they are there."""
+    print(table, end="")
+    path = pathlib.Path(__file__).parents[2] / "RESULTS.md"
+    begin, end = "<!-- quad-dynamics peers: begin -->\n", "<!-- quad-dynamics peers: end -->"
+    text = path.read_text() if path.exists() else ""
+    if begin in text and end in text:
+        head, rest = text.split(begin, 1)
+        path.write_text(head + begin + table + end + rest.split(end, 1)[1])
 
 
 if __name__ == "__main__":

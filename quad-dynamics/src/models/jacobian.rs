@@ -30,6 +30,7 @@ impl<const NX: usize, const NU: usize> Jacobian<NX, NU> {
 
 impl PointMass {
     /// [`derivative`](Self::derivative) with its analytic derivatives.
+    #[inline]
     #[must_use]
     pub fn jacobian(&self, state: &SVector<f64, 6>, control: &SVector<f64, 3>) -> Jacobian<6, 3> {
         let mut jacobian = Jacobian::of(self.derivative(state, control));
@@ -44,6 +45,7 @@ impl PointMass {
 
 impl JerkLimited {
     /// [`derivative`](Self::derivative) with its derivatives, which are constant.
+    #[inline]
     #[must_use]
     pub fn jacobian(&self, state: &SVector<f64, 9>, control: &SVector<f64, 3>) -> Jacobian<9, 3> {
         let mut jacobian = Jacobian::of(self.derivative(state, control));
@@ -57,6 +59,7 @@ impl JerkLimited {
 
 impl ThrustRate {
     /// [`derivative`](Self::derivative) with its analytic derivatives.
+    #[inline]
     #[must_use]
     pub fn jacobian(&self, state: &SVector<f64, 10>, control: &SVector<f64, 4>) -> Jacobian<10, 4> {
         let mut jacobian = Jacobian::of(self.derivative(state, control));
@@ -76,6 +79,7 @@ impl ThrustRate {
 
 impl RigidBody {
     /// [`derivative`](Self::derivative) with its analytic derivatives.
+    #[inline]
     #[must_use]
     pub fn jacobian(&self, state: &SVector<f64, 13>, control: &SVector<f64, 4>) -> Jacobian<13, 4> {
         let mut jacobian = Jacobian::of(self.derivative(state, control));

@@ -117,9 +117,16 @@ pub(crate) fn angular_acceleration<T: RealField + Copy>(
 /// Matrix times vector; the matrix's numbers are constants.
 #[inline]
 fn multiply<T: RealField + Copy>(matrix: &Matrix3<f64>, vector: [T; 3]) -> [T; 3] {
-    [0, 1, 2].map(|row| {
-        let entry = |column: usize| nalgebra::convert::<f64, T>(matrix[(row, column)]) * vector[column];
-        entry(0) + entry(1) + entry(2)
+    let [x, y, z] = vector;
+    // Fields instead of indices: no bounds to check.
+    let rows = [
+        [matrix.m11, matrix.m12, matrix.m13],
+        [matrix.m21, matrix.m22, matrix.m23],
+        [matrix.m31, matrix.m32, matrix.m33],
+    ];
+    rows.map(|row| {
+        let [a, b, c] = row.map(nalgebra::convert::<f64, T>);
+        a * x + b * y + c * z
     })
 }
 
