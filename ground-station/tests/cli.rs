@@ -121,3 +121,33 @@ fn a_foreign_folder_is_refused() -> Result<(), Box<dyn Error>> {
     assert_eq!(std::fs::read_dir(&out)?.count(), 1);
     Ok(())
 }
+
+/// Three safe distances that touch one another wall the pad in, and the only entry tried lies outside.
+#[test]
+fn a_leg_that_cannot_be_flown_is_said_and_nothing_is_written() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let mission = r#"
+        name = "wall"
+        [depot]
+        position = [0.0, 0.0]
+        [fleet]
+        vehicles = 1
+        preset = "survey-450"
+        [loiter]
+        radius = 5.501
+        height = 1.5
+        [transition]
+        entries = 1
+        segments = 20
+        safe_distance = 5.499
+        [targets]
+        positions = [[6.351, 0.0], [-3.1755, 5.50013], [-3.1755, -5.50013]]
+    "#;
+    std::fs::write(home.path().join("wall.toml"), mission)?;
+    let run = run(&["plan", "wall.toml", "--out", "out"], home.path())?;
+    assert_eq!(run.status.code(), Some(1));
+    let error = text(&run.stderr);
+    assert!(error.contains("leg 1 of vehicle 1") && error.contains("residual"), "{error}");
+    assert!(!home.path().join("out").exists());
+    Ok(())
+}

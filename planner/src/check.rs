@@ -148,6 +148,7 @@ impl Mission {
             for (target, loiter) in loiters {
                 let shaping = &transition.shaping;
                 let acceleration = loiter.speed * loiter.speed / self.radius(target);
+                let jerk = acceleration * loiter.angular_speed();
                 let mut below = |limit, value: f64, needed: f64| {
                     if value < needed * (1.0 - 1e-9) {
                         problems.push(Problem::ShapingBelowLoiter { limit, value, needed, target });
@@ -155,6 +156,7 @@ impl Mission {
                 };
                 below("speed", shaping.speed, loiter.speed);
                 below("acceleration", shaping.acceleration, acceleration);
+                below("jerk", shaping.jerk, jerk);
                 if !problems.is_empty() {
                     return;
                 }

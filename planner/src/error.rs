@@ -166,7 +166,7 @@ pub enum Problem {
     /// A shaping limit of the jerk-limited model is below what the loiter needs.
     #[error("transition.shaping.{limit} = {value} is below the {needed:.3} that the loiter around target {} needs: raise it or slow the loiter with loiter.speed_limit", target + 1)]
     ShapingBelowLoiter {
-        /// "speed" or "acceleration".
+        /// "speed", "acceleration" or "jerk".
         limit: &'static str,
         /// Its value.
         value: f64,

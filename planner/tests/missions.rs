@@ -239,3 +239,34 @@ fn impossible_geometry_and_budgets_are_named() {
     ));
     assert!(matches!(problems(&|m| m.targets.clear())[..], [Problem::NoTargets]));
 }
+
+/// Three safe distances that touch one another wall the pad in, and the only entry tried lies outside.
+#[test]
+fn a_leg_that_cannot_be_flown_is_an_error_with_its_residuals() {
+    let mut mission = small(Model::ThrustRate);
+    let corners = [[6.351, 0.0], [-3.1755, 5.500_13], [-3.1755, -5.500_13]];
+    mission.targets = corners.map(Target::at).to_vec();
+    mission.fleet.vehicles = 1;
+    (mission.loiter.radius, mission.transition.safe_distance) = (5.501, 5.499);
+    mission.transition.entries = Entries::Sampled(1);
+    mission.transition.segments = 20;
+    let Err(Error::Leg { leg: 0, circle: Some(_), candidates, .. }) = plan(&mission, &Options::default())
+    else {
+        panic!("a flight through a wall")
+    };
+    assert_eq!(candidates.len(), 2);
+    for candidate in candidates {
+        let Outcome::Failed { primal_residual, dual_residual } = candidate.outcome else {
+            panic!("{candidate:?}")
+        };
+        assert!(primal_residual.max(dual_residual) > 1e-6);
+    }
+}
+
+/// A loiter whose acceleration turns faster than the autopilot's jerk allows is named before anything is planned.
+#[test]
+fn shaping_below_the_loiter_is_named() {
+    let mut mission = small(Model::JerkLimited);
+    mission.transition.shaping.jerk = 0.1;
+    assert!(matches!(mission.problems()[..], [Problem::ShapingBelowLoiter { limit: "jerk", target: 0, .. }]));
+}
