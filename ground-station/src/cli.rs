@@ -1,6 +1,6 @@
 //! The command line.
 
-use crate::command::{self, PlanRequest};
+use crate::command::{self, PlanRequest, ReportRequest};
 use crate::failure::Failure;
 use crate::words::TRANSCRIPTIONS;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -21,6 +21,7 @@ Examples:
   ground-station plan                              plan the built-in field mission into out/
   ground-station plan my-field.toml --out plans/a  plan a mission file into plans/a
   ground-station plan my-field.toml --verify       check the plan with an independent integrator first
+  ground-station report my-field.toml              the same as one HTML page that flies the vehicles
   ground-station check my-field.toml               say all that is wrong with a mission file
 
 Exit codes: 0 done, 1 could not, 2 bad input. Nothing is written unless the code is 0.";
@@ -34,12 +35,21 @@ Examples:
 Files: plan.json (everything), map.svg, and for each vehicle vehicle-<i>.csv (trajectory), vehicle-<i>.plan
 (QGroundControl mission; needs an origin), profile-<i>.svg (speed, tilt, thrust). The folder is replaced as a whole.";
 
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  ground-station report                                  the built-in field mission as report.html
+  ground-station report pasture.toml --out pasture.html  another mission, another file
+A link to a moment: report.html#t=12.5";
+
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Plans a mission and writes the plan, trajectories, autopilot missions and pictures into a folder.
     #[command(after_help = PLAN_EXAMPLES)]
     Plan(PlanArguments),
+    /// Plans a mission and writes one HTML page: map, flight through time, charts, tables; opens in any browser, offline.
+    #[command(after_help = REPORT_EXAMPLES)]
+    Report(ReportArguments),
     /// Says all that is wrong with a mission file.
     Check {
         /// The mission file (TOML).
@@ -67,6 +77,25 @@ pub struct PlanArguments {
     /// How the optimal control problem is made finite, instead of what the mission says.
     #[arg(long, value_enum)]
     pub transcription: Option<TranscriptionWord>,
+    /// Neither progress bar nor table.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Arguments of `report`.
+#[derive(Debug, clap::Args)]
+pub struct ReportArguments {
+    /// The mission file (TOML); without one, the built-in field mission.
+    pub file: Option<PathBuf>,
+    /// The file to write.
+    #[arg(long, value_name = "FILE", default_value = "report.html")]
+    pub out: PathBuf,
+    /// Replace the file if it is there.
+    #[arg(long)]
+    pub force: bool,
+    /// Samples per second of the flight.
+    #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = parse_rate)]
+    pub rate: f64,
     /// Neither progress bar nor table.
     #[arg(long, short)]
     pub quiet: bool,
@@ -107,6 +136,11 @@ fn parse_rate(text: &str) -> Result<f64, String> {
 pub fn run(cli: Cli) -> Result<String, Failure> {
     match cli.command {
         Command::Check { file } => command::check(&file).map(|line| format!("{line}\n")),
+        Command::Report(arguments) => {
+            let ReportArguments { file, out, force, rate, quiet } = arguments;
+            let text = command::report(&ReportRequest { file, out, force, rate, quiet })?;
+            Ok(if quiet { String::new() } else { text })
+        }
         Command::Plan(arguments) => {
             let quiet = arguments.quiet;
             let request = PlanRequest {

@@ -20,6 +20,12 @@ pub enum Failure {
         /// The folder.
         folder: PathBuf,
     },
+    /// A file that is to be written is there already.
+    #[error("{} exists: nothing was written; choose another file with --out, or replace it with --force", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// The planner found no plan.
     #[error("no plan: {source}")]
     Planning {

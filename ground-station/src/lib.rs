@@ -47,10 +47,12 @@
 
 pub mod cli;
 pub mod command;
+pub mod execution;
 pub mod export;
 pub mod failure;
 pub mod geodesy;
 pub mod input;
+pub mod page;
 pub mod plot;
 pub mod problem;
 pub mod report;

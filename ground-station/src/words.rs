@@ -1,10 +1,18 @@
 //! The words for what the planner counts as values, as mission files, plans and tables use them.
 
+use crate::execution::Way;
 use crate::input::Autopilot;
 use planner::{Direction, Model, Objective, Pipeline, SolverStatus, Transcription};
 
 /// Words for [`Autopilot`].
 pub const AUTOPILOTS: [(&str, Autopilot); 2] = [("ardupilot", Autopilot::ArduPilot), ("px4", Autopilot::Px4)];
+/// Words for [`Way`].
+pub const WAYS: [(&str, Way); 4] = [
+    ("stream", Way::Stream),
+    ("loiter-items", Way::LoiterItems),
+    ("polygon", Way::Polygon),
+    ("live-orbit", Way::LiveOrbit),
+];
 /// Words for [`Objective`].
 pub const OBJECTIVES: [(&str, Objective); 2] =
     [("makespan", Objective::Makespan), ("total", Objective::Total)];

@@ -3,7 +3,11 @@
 mod check;
 mod outputs;
 mod plan;
+mod report;
 
 pub use check::check;
+pub(crate) use outputs::sampled;
 pub use outputs::{Outputs, outputs};
+pub(crate) use plan::rows;
 pub use plan::{PlanRequest, plan};
+pub use report::{ReportRequest, report};

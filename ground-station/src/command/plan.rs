@@ -8,7 +8,7 @@ use crate::input::{self, MissionFile};
 use crate::report::{self, VehicleRow, worst_of};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use planner::{Miss, Options, Plan, Tolerances, Transcription, VehiclePlan};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What is asked of the command.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,10 +35,7 @@ pub struct PlanRequest {
 ///
 /// [`Failure`]; nothing is written then.
 pub fn plan(request: &PlanRequest) -> Result<String, Failure> {
-    let mut file = match &request.file {
-        Some(path) => input::read(path)?,
-        None => input::built_in()?,
-    };
+    let mut file = mission(request.file.as_deref())?;
     if let Some(transcription) = request.transcription {
         file.mission.transition.transcription = transcription;
     }
@@ -69,8 +66,13 @@ pub fn plan(request: &PlanRequest) -> Result<String, Failure> {
     Ok(text)
 }
 
+/// The mission of a file; without one, the built-in field mission.
+pub(crate) fn mission(path: Option<&Path>) -> Result<MissionFile, Failure> {
+    path.map_or_else(input::built_in, input::read)
+}
+
 /// Runs the planner behind a progress bar on the standard error, which hides itself where that is no terminal.
-fn search(file: &MissionFile, quiet: bool) -> Result<Plan, Failure> {
+pub(crate) fn search(file: &MissionFile, quiet: bool) -> Result<Plan, Failure> {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(0), target);
     let template = "planning {bar:40} {pos}/{len} candidate transitions, {elapsed} gone, {eta} left";
@@ -87,14 +89,18 @@ fn search(file: &MissionFile, quiet: bool) -> Result<Plan, Failure> {
 }
 
 fn summary(file: &MissionFile, plan: &Plan) -> Result<String, Failure> {
-    let row = |(index, vehicle): (usize, &VehiclePlan)| row(file, plan, index, vehicle);
-    let rows = plan.vehicles.iter().enumerate().map(row).collect::<Result<Vec<_>, _>>()?;
-    let mut text = report::vehicle_table(&rows);
+    let mut text = report::vehicle_table(&rows(file, plan)?).render();
     text.push('\n');
     for line in report::certificate_lines(plan) {
         text.push_str(&format!("{line}\n"));
     }
     Ok(text)
+}
+
+/// The lines of the table of vehicles.
+pub(crate) fn rows(file: &MissionFile, plan: &Plan) -> Result<Vec<VehicleRow>, Failure> {
+    let row = |(index, vehicle): (usize, &VehiclePlan)| row(file, plan, index, vehicle);
+    plan.vehicles.iter().enumerate().map(row).collect()
 }
 
 fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> Result<VehicleRow, Failure> {

@@ -102,6 +102,44 @@ fn write_beside(target: &Path, parent: &Path, files: &[OutputFile]) -> Result<()
     })
 }
 
+/// Writes one file, whole or not at all; its folder is created if need be.
+///
+/// # Errors
+///
+/// [`Failure::Exists`] if it is there already and `force` is not given; [`Failure::Write`] if the operating system refuses.
+pub fn write_file(path: &Path, content: &str, force: bool) -> Result<(), Failure> {
+    check_file(path, force)?;
+    let parent = parent_of(path);
+    let created = create_parents(&parent)?;
+    let outcome = write_file_beside(path, &parent, content);
+    if outcome.is_err() {
+        created.iter().for_each(|folder| drop(fs::remove_dir(folder)));
+    }
+    outcome
+}
+
+/// Refuses a file that may not be replaced; to be asked before the work is done.
+///
+/// # Errors
+///
+/// [`Failure::Exists`] if it is there already and `force` is not given, or if it is no file.
+pub fn check_file(path: &Path, force: bool) -> Result<(), Failure> {
+    match fs::symlink_metadata(path) {
+        Ok(found) if !force || found.is_dir() => Err(Failure::Exists { path: path.to_owned() }),
+        _ => Ok(()),
+    }
+}
+
+fn write_file_beside(path: &Path, parent: &Path, content: &str) -> Result<(), Failure> {
+    // Made readable like any other file: a temporary file is for its owner only.
+    let fresh = tempfile::Builder::new()
+        .prefix(".file-")
+        .make_in(parent, |path| fs::OpenOptions::new().write(true).create_new(true).open(path))
+        .map_err(Failure::writing(path))?;
+    fs::write(fresh.path(), content).map_err(Failure::writing(path))?;
+    fresh.persist(path).map(drop).map_err(|error| Failure::writing(path)(error.error))
+}
+
 fn parent_of(folder: &Path) -> PathBuf {
     match folder.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -161,6 +199,19 @@ mod tests {
         fs::write(&file, "mine")?;
         assert!(check(&file, true).is_err());
         assert!(check(Path::new("."), true).is_err() && check(Path::new("/"), true).is_err());
+        Ok(())
+    }
+
+    #[test]
+    fn a_file_is_replaced_only_when_asked() -> Result<(), Box<dyn std::error::Error>> {
+        let home = tempfile::tempdir()?;
+        let path = home.path().join("deep/a.html");
+        write_file(&path, "one", false)?;
+        assert!(matches!(write_file(&path, "two", false), Err(Failure::Exists { .. })));
+        assert_eq!(fs::read_to_string(&path)?, "one");
+        write_file(&path, "two", true)?;
+        assert_eq!((fs::read_to_string(&path)?.as_str(), names(&home.path().join("deep")).len()), ("two", 1));
+        assert!(matches!(write_file(home.path(), "x", true), Err(Failure::Exists { .. })));
         Ok(())
     }
 

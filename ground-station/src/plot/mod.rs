@@ -15,4 +15,5 @@ mod svg;
 
 pub use from_plan::{map_scene, speed, tilt, vehicle_profile};
 pub use map::{MapCircle, MapScene, MapTarget, MapVehicle, map};
+pub use palette::colour;
 pub use profile::{Band, Limit, Panel, Profile, profile};

@@ -6,6 +6,8 @@ mod warnings;
 pub use table::Table;
 pub use warnings::warning_lines;
 
+use crate::execution::{CircleOutcome, Execution};
+use crate::words;
 use planner::{Miss, Plan, Verification};
 
 /// A vehicle's line of the table.
@@ -35,7 +37,7 @@ pub struct VehicleRow {
 
 /// The table of the vehicles, with the team's line at the end.
 #[must_use]
-pub fn vehicle_table(rows: &[VehicleRow]) -> String {
+pub fn vehicle_table(rows: &[VehicleRow]) -> Table {
     let mut table = Table::new(&[
         "vehicle",
         "targets",
@@ -52,7 +54,7 @@ pub fn vehicle_table(rows: &[VehicleRow]) -> String {
         table.push(cells((index + 1).to_string(), row));
     }
     table.push(cells("team".to_owned(), &team_row(rows)));
-    table.render()
+    table
 }
 
 fn cells(name: String, row: &VehicleRow) -> Vec<String> {
@@ -149,6 +151,26 @@ pub fn certificate_lines(plan: &Plan) -> Vec<String> {
     lines
 }
 
+/// How every vehicle flies its plan and what becomes of its circles.
+#[must_use]
+pub fn execution_table(executions: &[Execution]) -> Table {
+    let mut table = Table::new(&["vehicle", "way", "takes", "circles: radius flown, angle seen"]);
+    for (index, execution) in
+        executions.iter().enumerate().filter(|(_, execution)| !execution.circles.is_empty())
+    {
+        let circle = |circle: &CircleOutcome| {
+            format!("{}: {:.1} m, {:.0} deg", circle.name, circle.radius, circle.seen.to_degrees())
+        };
+        table.push(vec![
+            (index + 1).to_string(),
+            words::word(&words::WAYS, &execution.way).to_owned(),
+            format!("{:.1} s", execution.duration),
+            execution.circles.iter().map(circle).collect::<Vec<_>>().join("; "),
+        ]);
+    }
+    table
+}
+
 /// What the independent check saw: the worst of every vehicle and of all.
 #[must_use]
 pub fn verification_text(verification: &Verification) -> String {
@@ -197,7 +219,7 @@ mod tests {
     #[test]
     fn the_table_names_every_vehicle_and_sums_the_team() {
         let spare = VehicleRow { length: 0.0, transit: 0.0, loiters: 0.0, total: 0.0, ..row(0, "") };
-        let text = vehicle_table(&[row(3, "3 1 4"), row(2, "2+5"), spare]);
+        let text = vehicle_table(&[row(3, "3 1 4"), row(2, "2+5"), spare]).render();
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[0].starts_with("vehicle  targets") && lines[0].ends_with("worst integrated miss"));
         assert!(

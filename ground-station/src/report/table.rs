@@ -18,6 +18,12 @@ impl Table {
         self.rows.push(cells);
     }
 
+    /// The headings and then the rows.
+    #[must_use]
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
     /// The text: cells right-aligned, the first two columns left-aligned, a line below the headings.
     #[must_use]
     pub fn render(&self) -> String {

@@ -6,9 +6,11 @@
 
 mod ardupilot;
 mod document;
+mod from_plan;
 mod px4;
 
 pub use document::{CircleFence, Fence, FenceCircle, Item, Mission, PlanFile, Rally};
+pub use from_plan::vehicle_mission;
 
 use crate::geodesy::Origin;
 use crate::input::Autopilot;
