@@ -1,6 +1,5 @@
 //! Where a circle may be entered, and how soon at best.
 
-use crate::bound::Envelope;
 use crate::circles::Orbit;
 use crate::mission::Entries;
 use crate::plan::Entry;
@@ -30,7 +29,7 @@ pub(crate) fn entrances(
     here: &Motion,
     orbit: &Orbit,
     entries: Entries,
-    envelope: &Envelope,
+    least_time: impl Fn(&Motion, &Motion) -> f64,
 ) -> Vec<Entrance> {
     let n = n_entrances(entries) / 2;
     (0..n)
@@ -38,7 +37,7 @@ pub(crate) fn entrances(
         .flat_map(|angle| Direction::BOTH.map(|direction| Entry { angle, direction }))
         .map(|entry| {
             let there = orbit.at(entry);
-            Entrance { entry, lower_bound: envelope.least_time_between(here, &there) }
+            Entrance { entry, lower_bound: least_time(here, &there) }
         })
         .collect()
 }

@@ -12,7 +12,7 @@ use quad_dynamics::Motion;
 
 /// Candidates solved between two comparisons with the bounds. A constant, and not the number of threads, so that the same
 /// candidates are discarded on every machine.
-const BATCH: usize = 4;
+const BATCH: usize = 2;
 
 /// Everything that the legs of all routes share.
 pub(crate) struct Airspace<'a> {
@@ -68,9 +68,17 @@ impl Airspace<'_> {
         Ok(legs)
     }
 
+    /// No admissible motion leads from one motion to the other sooner (s).
+    fn least_time(&self, from: &Motion, to: &Motion) -> f64 {
+        let proved = self.envelope.least_time_between(from, to);
+        self.pilot.agility().map_or(proved, |agility| agility.least_time(from, to, proved))
+    }
+
     /// Solves the candidate entries of a circle in order of promise, discarding those that provably cannot win.
     fn to_circle(&self, here: &Motion, orbit: &Orbit) -> (Option<Arrival>, Vec<Candidate>) {
-        let entrances = entry::entrances(here, orbit, self.mission.transition.entries, &self.envelope);
+        let entrances = entry::entrances(here, orbit, self.mission.transition.entries, |from, to| {
+            self.least_time(from, to)
+        });
         let mut candidates: Vec<Candidate> = entrances
             .iter()
             .map(|entrance| Candidate {
@@ -86,7 +94,7 @@ impl Airspace<'_> {
             let to_beat = fastest(&arrivals).map_or(f64::INFINITY, |arrival| arrival.transition.duration);
             let open: Vec<usize> =
                 batch.iter().copied().filter(|&i| entrances[i].lower_bound < to_beat).collect();
-            let solved = self.solve_all(here, orbit, &entrances, &open, &arrivals);
+            let solved = self.solve_all(here, orbit, &entrances, &open, &arrivals, to_beat);
             self.watch.advance(batch.len());
             for (index, outcome) in open.into_iter().zip(solved) {
                 candidates[index].outcome = outcome_of(&outcome);
@@ -111,12 +119,13 @@ impl Airspace<'_> {
         entrances: &[Entrance],
         open: &[usize],
         arrivals: &[Arrival],
+        to_beat: f64,
     ) -> Vec<Result<Transition, Unsolved>> {
         let solve = |&i: &usize| {
             let Entrance { entry, lower_bound } = entrances[i];
             let there = orbit.at(entry);
             let hint = neighbour(arrivals, entry).map_or(Hint::Time(lower_bound), Hint::Neighbour);
-            self.pilot.fly(here, Goal::Motion(there), &there, hint)
+            self.pilot.fly(here, Goal::Motion(there), &there, hint, to_beat)
         };
         #[cfg(feature = "rayon")]
         {
@@ -137,7 +146,8 @@ impl Airspace<'_> {
     ) -> Option<Arrival> {
         let goal = Goal::Circle(orbit, sampled.entry.direction);
         let hint = Hint::Neighbour(&sampled.transition);
-        let transition = self.pilot.fly(here, goal, &orbit.at(sampled.entry), hint).ok()?;
+        let transition =
+            self.pilot.fly(here, goal, &orbit.at(sampled.entry), hint, sampled.transition.duration).ok()?;
         if transition.duration >= sampled.transition.duration {
             return None;
         }
@@ -157,7 +167,8 @@ impl Airspace<'_> {
             here,
             Goal::Hover(there),
             &there,
-            Hint::Time(self.envelope.least_time_between(here, &there)),
+            Hint::Time(self.least_time(here, &there)),
+            f64::INFINITY,
         );
         self.watch.advance(1);
         let outcome = outcome_of(&solved);

@@ -1,5 +1,6 @@
 //! The optimal control problem: cost, bounds, path constraints, boundary conditions.
 
+use crate::Hessian;
 use crate::{Bounds, Dynamics};
 use nalgebra::{RealField, SVector};
 
@@ -58,6 +59,30 @@ pub trait Problem<const NX: usize, const NU: usize> {
         _control: &SVector<T, NU>,
         _values: &mut [T],
     ) {
+    }
+
+    /// Writes the gradient of every path function by state and by control (not by time), and returns true; a problem that
+    /// returns false, the default, is differentiated automatically. Only asked of [autonomous](Self::is_autonomous) problems.
+    fn path_gradients(
+        &self,
+        _state: &SVector<f64, NX>,
+        _control: &SVector<f64, NU>,
+        _by_state: &mut [SVector<f64, NX>],
+        _by_control: &mut [SVector<f64, NU>],
+    ) -> bool {
+        false
+    }
+
+    /// Adds the second derivatives of the `weights`-weighted sum of the path functions to `sum`, and returns true; must do so
+    /// if and only if [`path_gradients`](Self::path_gradients) does.
+    fn path_hessian(
+        &self,
+        _state: &SVector<f64, NX>,
+        _control: &SVector<f64, NU>,
+        _weights: &[f64],
+        _sum: &mut Hessian<NX, NU>,
+    ) -> bool {
+        false
     }
 
     /// Lower and upper bound of path function `index`; infinite where there is none.

@@ -1,5 +1,6 @@
 //! What a model of the vehicle must tell before a transition with it can be planned.
 
+use crate::bound::Agility;
 use crate::mission::Model;
 use nalgebra::{RealField, SVector};
 use quad_dynamics::Motion;
@@ -37,6 +38,9 @@ pub(crate) trait Flight<const NX: usize, const NU: usize>: Dynamics<NX, NU> + Cl
         _values: &mut [T],
     ) {
     }
+
+    /// What a lower bound on times may count on; `None` if the model moves by other rules than thrust and drag.
+    fn agility(&self) -> Option<Agility>;
 
     /// Where the attitude stands in the state (w first), if it does.
     const ATTITUDE: Option<usize>;

@@ -19,9 +19,11 @@ pub(crate) use examine::{Examination, miss};
 pub(crate) use problem::Goal;
 pub(crate) use solve::{Hint, Unsolved};
 
+use crate::bound::Agility;
 use crate::circles::Orbit;
 use crate::mission::{Mission, Model, TransitionSettings};
 use crate::plan::{Entry, Transition};
+use flight::Flight;
 use models::{JerkLimitedFlight, PointMassFlight, RigidBodyFlight, ThrustRateFlight};
 use nalgebra::Vector3;
 use problem::KeepOut;
@@ -73,20 +75,27 @@ impl Pilot {
         Self { airframe, keep_outs, settings }
     }
 
-    /// The fastest transition to a goal; guesses lead `towards` (for a circle a promising entry).
+    /// What a lower bound on the time of a transition may count on.
+    pub(crate) fn agility(&self) -> Option<Agility> {
+        with_flight!(&self.airframe, flight => flight.agility())
+    }
+
+    /// The fastest transition to a goal; guesses lead `towards` (for a circle a promising entry). One slower than `to_beat` (s)
+    /// may overstep something between its knots.
     pub(crate) fn fly(
         &self,
         start: &Motion,
         goal: Goal,
         towards: &Motion,
         hint: Hint,
+        to_beat: f64,
     ) -> Result<Transition, Unsolved> {
         let surroundings = Surroundings {
             keep_outs: &self.keep_outs,
             heights: self.settings.heights,
             settings: &self.settings,
         };
-        with_flight!(&self.airframe, flight => solve::fly(flight, start, goal, towards, hint, &surroundings))
+        with_flight!(&self.airframe, flight => solve::fly(flight, start, goal, towards, hint, &surroundings, to_beat))
     }
 
     /// The transition as an independent integration of its controls sees it; `None` if it is malformed.

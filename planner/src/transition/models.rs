@@ -1,6 +1,7 @@
 //! The four models of the vehicle with their limits.
 
 use super::flight::{Flight, real};
+use crate::bound::Agility;
 use crate::circles::Orbit;
 use crate::mission::{Model, TransitionSettings};
 use nalgebra::{RealField, SVector, Vector3};
@@ -61,12 +62,19 @@ macro_rules! dynamics {
     };
 }
 
+/// The agility of a vehicle with thrust between two values (N) and a thrust axis that turns at most so fast (rad/s).
+fn agility(vehicle: &Vehicle, thrust: [f64; 2], turn_rate: f64) -> Agility {
+    let mass = vehicle.mass();
+    Agility { thrust: thrust.map(|f| f / mass), drag: vehicle.drag_coefficient() / (2.0 * mass), turn_rate }
+}
+
 /// Position and velocity under a bounded thrust vector.
 #[derive(Debug, Clone)]
 pub(crate) struct PointMassFlight {
     model: PointMass,
     weight: f64,
     max_thrust: f64,
+    agility: Agility,
 }
 
 dynamics!(PointMassFlight, 6, 3, |model, state, _control, weight| model.hessian(state, weight));
@@ -74,13 +82,18 @@ dynamics!(PointMassFlight, 6, 3, |model, state, _control, weight| model.hessian(
 impl PointMassFlight {
     pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
         let max_thrust = settings.thrust_budget * vehicle.max_thrust();
-        Self { model: PointMass::new(vehicle), weight: vehicle.weight(), max_thrust }
+        let agility = agility(vehicle, [0.0, max_thrust], f64::INFINITY);
+        Self { model: PointMass::new(vehicle), weight: vehicle.weight(), max_thrust, agility }
     }
 }
 
 impl Flight<6, 3> for PointMassFlight {
     const MODEL: Model = Model::PointMass;
     const ATTITUDE: Option<usize> = None;
+
+    fn agility(&self) -> Option<Agility> {
+        Some(self.agility)
+    }
 
     fn state(&self, motion: &Motion) -> SVector<f64, 6> {
         motion.point_mass_state()
@@ -125,6 +138,10 @@ impl JerkLimitedFlight {
 impl Flight<9, 3> for JerkLimitedFlight {
     const MODEL: Model = Model::JerkLimited;
     const ATTITUDE: Option<usize> = None;
+
+    fn agility(&self) -> Option<Agility> {
+        None
+    }
 
     fn state(&self, motion: &Motion) -> SVector<f64, 9> {
         motion.jerk_limited_state()
@@ -171,6 +188,7 @@ pub(crate) struct ThrustRateFlight {
     weight: f64,
     thrust: [f64; 2],
     rates: Vector3<f64>,
+    agility: Agility,
 }
 
 dynamics!(ThrustRateFlight, 10, 4, |model, state, control, weight| model.hessian(state, control, weight));
@@ -178,11 +196,14 @@ dynamics!(ThrustRateFlight, 10, 4, |model, state, control, weight| model.hessian
 impl ThrustRateFlight {
     pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
         let budget = settings.thrust_budget;
+        let thrust = [vehicle.min_thrust(), budget * vehicle.max_thrust()];
+        let rates = vehicle.max_body_rates() * budget;
         Self {
             model: ThrustRate::new(vehicle),
             weight: vehicle.weight(),
-            thrust: [vehicle.min_thrust(), budget * vehicle.max_thrust()],
-            rates: vehicle.max_body_rates() * budget,
+            thrust,
+            rates,
+            agility: agility(vehicle, thrust, rates.xy().norm()),
         }
     }
 }
@@ -190,6 +211,10 @@ impl ThrustRateFlight {
 impl Flight<10, 4> for ThrustRateFlight {
     const MODEL: Model = Model::ThrustRate;
     const ATTITUDE: Option<usize> = Some(6);
+
+    fn agility(&self) -> Option<Agility> {
+        Some(self.agility)
+    }
 
     fn state(&self, motion: &Motion) -> SVector<f64, 10> {
         motion.thrust_rate_state()
@@ -217,6 +242,7 @@ pub(crate) struct RigidBodyFlight {
     weight: f64,
     rotor_thrust: [f64; 2],
     rates: Vector3<f64>,
+    agility: Agility,
 }
 
 dynamics!(RigidBodyFlight, 13, 4, |model, state, control, weight| model.hessian(state, control, weight));
@@ -231,11 +257,13 @@ impl RigidBodyFlight {
             let loiter = orbit.loiter.state(0.0, Direction::CounterClockwise).body_rates.abs() * (1.0 + 1e-6);
             rates = rates.sup(&loiter);
         }
+        let rotor_thrust = [vehicle.min_rotor_thrust(), budget * vehicle.max_rotor_thrust()];
         Self {
             model: RigidBody::new(vehicle),
             weight: vehicle.weight(),
-            rotor_thrust: [vehicle.min_rotor_thrust(), budget * vehicle.max_rotor_thrust()],
+            rotor_thrust,
             rates,
+            agility: agility(vehicle, rotor_thrust.map(|rotor| 4.0 * rotor), rates.xy().norm()),
         }
     }
 }
@@ -243,6 +271,10 @@ impl RigidBodyFlight {
 impl Flight<13, 4> for RigidBodyFlight {
     const MODEL: Model = Model::RigidBody;
     const ATTITUDE: Option<usize> = Some(6);
+
+    fn agility(&self) -> Option<Agility> {
+        Some(self.agility)
+    }
 
     fn state(&self, motion: &Motion) -> SVector<f64, 13> {
         motion.rigid_body_state()

@@ -5,7 +5,7 @@ use crate::circles::Orbit;
 use nalgebra::{RealField, SVector, Vector3};
 use quad_dynamics::frames::to_wxyz;
 use quad_dynamics::{Direction, Motion};
-use traj_opt::{Bounds, Problem};
+use traj_opt::{Bounds, Hessian, Problem};
 
 /// A vertical cylinder to stay out of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -137,6 +137,45 @@ impl<const NX: usize, const NU: usize, F: Flight<NX, NU>> Problem<NX, NU> for Mi
             *value = (dx * dx + dy * dy) / real(keep_out.radius * keep_out.radius);
         }
         self.flight.limits(state, control, limits);
+    }
+
+    fn path_gradients(
+        &self,
+        state: &SVector<f64, NX>,
+        _: &SVector<f64, NU>,
+        by_state: &mut [SVector<f64, NX>],
+        by_control: &mut [SVector<f64, NU>],
+    ) -> bool {
+        if self.flight.n_limits() > 0 {
+            return false;
+        }
+        by_control.fill(SVector::zeros());
+        for (gradient, keep_out) in by_state.iter_mut().zip(self.keep_outs) {
+            let scale = 2.0 / (keep_out.radius * keep_out.radius);
+            *gradient = SVector::zeros();
+            for axis in 0..2 {
+                gradient[axis] = scale * (state[axis] - keep_out.centre[axis]);
+            }
+        }
+        true
+    }
+
+    fn path_hessian(
+        &self,
+        _: &SVector<f64, NX>,
+        _: &SVector<f64, NU>,
+        weights: &[f64],
+        sum: &mut Hessian<NX, NU>,
+    ) -> bool {
+        if self.flight.n_limits() > 0 {
+            return false;
+        }
+        for (weight, keep_out) in weights.iter().zip(self.keep_outs) {
+            let curvature = 2.0 * weight / (keep_out.radius * keep_out.radius);
+            sum.state_state[(0, 0)] += curvature;
+            sum.state_state[(1, 1)] += curvature;
+        }
+        true
     }
 
     fn path_bounds(&self, index: usize) -> (f64, f64) {

@@ -24,6 +24,10 @@ const LONGEST_STEP: f64 = 0.08;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
 
+/// Keep-outs at least so far (m) from the straight line are only considered once they have been entered: most never are, and
+/// each makes every solve slower.
+const NEAR: f64 = 2.0;
+
 /// Everything around a transition that does not change from one candidate to the next.
 #[derive(Clone, Copy)]
 pub(crate) struct Surroundings<'a> {
@@ -48,7 +52,8 @@ impl Unsolved {
 }
 
 /// The fastest transition from `start` to `goal` found from several guesses; `towards` is where guesses lead (for a
-/// circle a promising entry).
+/// circle a promising entry). One that takes longer than `to_beat` (s) is returned as soon as that is clear, looked at but not
+/// mended where it oversteps something between the knots: mending would only make it slower.
 pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     flight: &F,
     start: &Motion,
@@ -56,9 +61,11 @@ pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     towards: &Motion,
     hint: Hint,
     surroundings: &Surroundings,
+    to_beat: f64,
 ) -> Result<Transition, Unsolved> {
     let mut unsolved = Unsolved::NOTHING;
-    let attempt = Attempt { flight, start, goal, surroundings, segments: surroundings.settings.segments };
+    let attempt =
+        Attempt { flight, start, goal, surroundings, to_beat, segments: surroundings.settings.segments };
     let about = match hint {
         Hint::Time(about) => about,
         Hint::Neighbour(neighbour) => {
@@ -71,8 +78,7 @@ pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         }
     };
     for (straight, stretch, finer) in [(false, 1.2, 1), (true, 1.5, 1), (false, 2.5, 2)] {
-        let attempt =
-            Attempt { flight, start, goal, surroundings, segments: surroundings.settings.segments * finer };
+        let attempt = Attempt { segments: surroundings.settings.segments * finer, ..attempt };
         let keep_outs = attempt.near(towards);
         let free_yaw = matches!(goal, Goal::Hover(_));
         let first = guess(flight, start, towards, &keep_outs, stretch * about + 0.3, straight, free_yaw);
@@ -107,6 +113,7 @@ struct Attempt<'a, F> {
     start: &'a Motion,
     goal: Goal<'a>,
     surroundings: &'a Surroundings<'a>,
+    to_beat: f64,
     segments: usize,
 }
 
@@ -120,8 +127,7 @@ impl<F> Attempt<'_, F> {
         let near = |keep_out: &&KeepOut| {
             let (px, py) = (keep_out.centre[0] - a.x, keep_out.centre[1] - a.y);
             let s = if squared > 0.0 { ((px * dx + py * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
-            keep_out.radius > 0.0
-                && (px - s * dx).hypot(py - s * dy) < keep_out.radius + 8.0 + squared.sqrt() / 3.0
+            keep_out.radius > 0.0 && (px - s * dx).hypot(py - s * dy) < keep_out.radius + NEAR
         };
         self.surroundings.keep_outs.iter().filter(near).copied().collect()
     }
@@ -154,6 +160,9 @@ impl<F> Attempt<'_, F> {
             let mut transition = record::<NX, NU, F>(&solution);
             let Some(seen) = self.look(&transition) else { return Err(residuals) };
             complete(&mut transition, &seen, self.miss(&solution, &seen.end));
+            if transition.duration > self.to_beat {
+                return Ok(transition);
+            }
             let clear = seen.clearance >= 0.0;
             if !self.adjust(&mut setting, &transition, &seen) || (round == ROUNDS && clear) {
                 return Ok(transition);

@@ -102,6 +102,10 @@ fn jacobian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     rows: &mut Rows<NX, NU>,
     scratch: &mut Scratch<NX, NU>,
 ) {
+    if !timed && problem.path_gradients(x, u, rows.x, rows.u) {
+        rows.t.fill(0.0);
+        return;
+    }
     let n = rows.x.len();
     problem.path(DualSVec64::from_re(t), &seed(x), &constant::<NU, NX>(u), &mut scratch.x[..n]);
     problem.path(DualSVec64::from_re(t), &constant::<NX, NU>(x), &seed(u), &mut scratch.u[..n]);
@@ -126,6 +130,9 @@ fn hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 ) -> Hessian<NX, NU> {
     let n = weights.len();
     let mut sum = Hessian::zeros();
+    if !timed && problem.path_hessian(x, u, weights, &mut sum) {
+        return sum;
+    }
     problem.path(Dual2SVec64::from_re(t), &seed2(x), &constant2::<NU, NX>(u), &mut scratch.xx[..n]);
     problem.path(Dual2SVec64::from_re(t), &constant2::<NX, NU>(x), &seed2(u), &mut scratch.uu[..n]);
     let (rows, columns) = (seed_rows::<NX, NU>(x), seed_columns::<NX, NU>(u));

@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn no_reference_transition_is_faster_than_its_bound() {
-        let table = include_str!("../tests/data/transitions.csv");
+        let table = include_str!("../../tests/data/transitions.csv");
         let mut lines = table.lines();
         let header: Vec<&str> = lines.next().unwrap().split(',').collect();
         let column = |name: &str| header.iter().position(|h| *h == name).unwrap();
