@@ -19,6 +19,7 @@
 //! | solve it | [`solve`], [`solve_with`], [`Guess`], [`Options`] |
 //! | use the result | [`Solution`], [`Status`] |
 //! | check it independently | [`Solution::integrate`], [`integrate`], [`segment_errors`], [`check_derivatives`] |
+//! | see what it leaves between the knots | [`Solution::greatest_violation`] |
 //! | refine the mesh | [`solve_refined`], [`refined_mesh`] |
 //!
 //! # Example
@@ -100,6 +101,7 @@ mod solution;
 mod solve;
 mod status;
 mod transcription;
+mod violation;
 
 pub use nalgebra;
 
@@ -117,6 +119,7 @@ pub use solution::{Multipliers, Solution};
 pub use solve::{Workspace, solve, solve_with};
 pub use status::{Iteration, Residuals, Status};
 pub use transcription::Transcription;
+pub use violation::{ConstraintKind, Violation};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
