@@ -24,17 +24,24 @@ pub(crate) fn n_entrances(entries: Entries) -> usize {
     }
 }
 
-/// The sampled entries of a circle, by angle and then direction, with bounds for a flight from `here`.
+/// The sampled entries, by angle and then direction.
+pub(crate) fn sampled(entries: Entries) -> Vec<Entry> {
+    let n = n_entrances(entries) / 2;
+    (0..n)
+        .map(|i| std::f64::consts::TAU * i as f64 / n as f64)
+        .flat_map(|angle| Direction::BOTH.map(|direction| Entry { angle, direction }))
+        .collect()
+}
+
+/// The sampled entries of a circle with bounds for a flight from `here`.
 pub(crate) fn entrances(
     here: &Motion,
     orbit: &Orbit,
     entries: Entries,
     least_time: impl Fn(&Motion, &Motion) -> f64,
 ) -> Vec<Entrance> {
-    let n = n_entrances(entries) / 2;
-    (0..n)
-        .map(|i| std::f64::consts::TAU * i as f64 / n as f64)
-        .flat_map(|angle| Direction::BOTH.map(|direction| Entry { angle, direction }))
+    sampled(entries)
+        .into_iter()
         .map(|entry| {
             let there = orbit.at(entry);
             Entrance { entry, lower_bound: least_time(here, &there) }

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mission::{Entries, Mission};
 use crate::options::Watch;
 use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
-use crate::transition::{Goal, Hint, Pilot, Unsolved, hover};
+use crate::transition::{Goal, Hint, Pilot, Unsolved};
 use quad_dynamics::Motion;
 
 /// Candidates solved between two comparisons with the bounds. A constant, and not the number of threads, so that the same
@@ -40,14 +40,36 @@ impl Airspace<'_> {
 
     /// Flies a route from its pad and back, each leg by the fastest of its candidates, starting at time 0.
     pub(crate) fn fly(&self, vehicle: usize, pad: [f64; 3], route: &[usize]) -> Result<Vec<Leg>, Error> {
+        self.fly_by(vehicle, pad, route, |_, here, orbit| self.to_circle(here, orbit))
+    }
+
+    /// Flies a route by given entries, one per circle; with [`Entries::Free`] each is where the search starts.
+    pub(crate) fn fly_entries(
+        &self,
+        vehicle: usize,
+        pad: [f64; 3],
+        route: &[usize],
+        entries: &[Entry],
+    ) -> Result<Vec<Leg>, Error> {
+        self.fly_by(vehicle, pad, route, |index, here, orbit| self.to_entry(here, orbit, entries[index]))
+    }
+
+    fn fly_by(
+        &self,
+        vehicle: usize,
+        pad: [f64; 3],
+        route: &[usize],
+        to_next: impl Fn(usize, &Motion, &Orbit) -> (Option<Arrival>, Vec<Candidate>),
+    ) -> Result<Vec<Leg>, Error> {
         let mut legs: Vec<Leg> = Vec::with_capacity(route.len() + 1);
-        let Some(&first) = route.first() else { return Ok(legs) };
-        let centre = self.orbits[first].circle.centre;
-        let mut here = hover(self.mission, pad, centre);
+        if route.is_empty() {
+            return Ok(legs);
+        }
+        let mut here = self.take_off(pad, route);
         let mut time = 0.0;
-        for &circle in route {
+        for (index, &circle) in route.iter().enumerate() {
             let orbit = &self.orbits[circle];
-            let (arrival, candidates) = self.to_circle(&here, orbit);
+            let (arrival, candidates) = to_next(index, &here, orbit);
             if self.watch.should_stop() {
                 return Err(Error::Stopped);
             }
@@ -66,6 +88,20 @@ impl Airspace<'_> {
             None => return Err(Error::Leg { vehicle, leg: legs.len(), circle: None, candidates }),
         }
         Ok(legs)
+    }
+
+    /// The transition to one entry of a circle.
+    fn to_entry(&self, here: &Motion, orbit: &Orbit, entry: Entry) -> (Option<Arrival>, Vec<Candidate>) {
+        let there = orbit.at(entry);
+        let hint = Hint::Time(self.envelope.least_time_between(here, &there));
+        let solved = self.pilot.fly(here, Goal::Motion(there), &there, hint, f64::INFINITY);
+        let mut candidates = vec![Candidate { entry: Some(entry), outcome: outcome_of(&solved) }];
+        let arrival = solved.ok().map(|transition| Arrival { index: 0, entry, transition });
+        let freed = match (self.mission.transition.entries, &arrival) {
+            (Entries::Free, Some(arrival)) => self.freed(here, orbit, arrival, &mut candidates),
+            _ => None,
+        };
+        (freed.or(arrival), candidates)
     }
 
     /// No admissible motion leads from one motion to the other sooner (s).
@@ -162,7 +198,7 @@ impl Airspace<'_> {
     }
 
     fn to_pad(&self, here: &Motion, pad: [f64; 3]) -> (Option<Transition>, Vec<Candidate>) {
-        let there = hover(self.mission, pad, [pad[0] + 1.0, pad[1]]);
+        let there = self.landing(pad);
         let solved = self.pilot.fly(
             here,
             Goal::Hover(there),

@@ -9,8 +9,9 @@
 //! | check | all that is wrong with the mission, at once | `check.rs` |
 //! | circles | close targets merged; the fastest loiter within the limits | `circles.rs` |
 //! | routes | k-means and Christofides, or optimised routes | `allocation.rs` |
-//! | entries | sampled angles in both directions, bounded from below | `entry.rs`, `bound.rs` |
+//! | entries | sampled angles in both directions, bounded from below | `entry.rs`, `bound/` |
 //! | legs | the paper's Algorithm 1: the fastest transition over all entries | `legs.rs`, `transition/` |
+//! | whole routes | entries that are best for a route, not for a leg | `whole_route.rs`, `time_model.rs` |
 //! | certificate | makespan and total beside lower bounds | `certificate.rs` |
 //! | verification | all controls integrated again, independently | `verify.rs` |
 //!
@@ -59,8 +60,10 @@ mod plan;
 mod planning;
 mod sample;
 mod separation;
+mod time_model;
 mod transition;
 mod verify;
+mod whole_route;
 
 pub use christofides;
 pub use cluster;

@@ -51,6 +51,9 @@ pub struct VehiclePlan {
     pub route: Vec<usize>,
     /// One leg per circle of the route and one back to the pad; empty for a spare vehicle.
     pub legs: Vec<Leg>,
+    /// Time in the air (s) had every leg been the fastest by itself, as in the paper; what [`VehiclePlan::duration`] is less was
+    /// gained by choosing entries for the route as a whole.
+    pub leg_by_leg: f64,
 }
 
 /// A transition and the loiter that follows it; the last leg of a vehicle leads back to its pad and has no loiter.
@@ -62,8 +65,8 @@ pub struct Leg {
     pub transition: Transition,
     /// The circle flown at its end.
     pub loiter: Option<Loiter>,
-    /// What became of every candidate entry, in the order of angle and then direction; for a flight to the pad the one
-    /// candidate has no entry.
+    /// What became of every candidate entry, in the order of angle and then direction. For a flight to the pad the one
+    /// candidate has no entry; where the entry was chosen for the route as a whole, it is the only candidate.
     pub candidates: Vec<Candidate>,
 }
 

@@ -8,7 +8,9 @@ use crate::mission::{Mission, Model};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
 use crate::separation::{closest_pair, in_the_air, start_delays};
+use crate::time_model::TimeModel;
 use crate::transition::Pilot;
+use crate::whole_route::Flown;
 use crate::{allocation, certificate};
 
 /// Plans a mission.
@@ -41,11 +43,14 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     let total = routes.iter().map(|route| airspace.n_candidates(route.len())).sum();
     airspace.watch = Watch::new(*options, total);
     let legs = fly_all(&airspace, &pads, &routes)?;
+    let found_leg_by_leg: Vec<f64> = legs.iter().map(|legs| legs.last().map_or(0.0, Leg::end_time)).collect();
+    let legs = reconsider_all(&airspace, &pads, &routes, legs)?;
     let vehicles: Vec<VehiclePlan> = pads
         .into_iter()
         .zip(routes)
         .zip(legs)
-        .map(|((pad, route), legs)| VehiclePlan { pad, route, legs })
+        .zip(found_leg_by_leg)
+        .map(|(((pad, route), legs), leg_by_leg)| VehiclePlan { pad, route, legs, leg_by_leg })
         .collect();
     let circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
     let certificate = certificate::certificate(mission, &orbits, &envelope, &vehicles)?;
@@ -83,17 +88,45 @@ fn envelope(mission: &Mission, orbits: &[Orbit]) -> Envelope {
     Envelope::of_thrust(share * vehicle.max_thrust(), mass, drag, quad_dynamics::GRAVITY, fastest)
 }
 
-/// The legs of every route; with the feature `rayon` side by side. The first error by vehicle counts, on any number of threads.
+/// The legs of every route, each leg by itself the fastest.
 fn fly_all(airspace: &Airspace, pads: &[[f64; 3]], routes: &[Vec<usize>]) -> Result<Vec<Vec<Leg>>, Error> {
-    let fly = |vehicle: usize| airspace.fly(vehicle, pads[vehicle], &routes[vehicle]);
+    for_all(routes.iter().enumerate().collect(), |(vehicle, route)| {
+        airspace.fly(vehicle, pads[vehicle], route)
+    })
+}
+
+/// The legs of every route with entries chosen for the route as a whole where that is faster.
+fn reconsider_all(
+    airspace: &Airspace,
+    pads: &[[f64; 3]],
+    routes: &[Vec<usize>],
+    legs: Vec<Vec<Leg>>,
+) -> Result<Vec<Vec<Leg>>, Error> {
+    let flown: Vec<Flown> = legs
+        .into_iter()
+        .enumerate()
+        .map(|(vehicle, legs)| Flown { vehicle, pad: pads[vehicle], route: &routes[vehicle], legs })
+        .collect();
+    let solved: Vec<_> = flown.iter().flat_map(|flown| airspace.solved(flown)).collect();
+    let [acceleration, speed] = airspace.envelope.level_flight();
+    let model = TimeModel::new(acceleration, speed).calibrated(&solved);
+    for_all(flown, |flown| airspace.reconsider(flown, &model))
+}
+
+/// Does something for every route; with the feature `rayon` side by side. The first error in order counts, on any number of
+/// threads.
+fn for_all<T: Send, R: Send>(
+    items: Vec<T>,
+    work: impl Fn(T) -> Result<R, Error> + Send + Sync,
+) -> Result<Vec<R>, Error> {
     #[cfg(feature = "rayon")]
-    let flown: Vec<Result<Vec<Leg>, Error>> = {
+    let done: Vec<Result<R, Error>> = {
         use rayon::prelude::*;
-        (0..routes.len()).into_par_iter().map(fly).collect()
+        items.into_par_iter().map(work).collect()
     };
     #[cfg(not(feature = "rayon"))]
-    let flown: Vec<Result<Vec<Leg>, Error>> = (0..routes.len()).map(fly).collect();
-    flown.into_iter().collect()
+    let done: Vec<Result<R, Error>> = items.into_iter().map(work).collect();
+    done.into_iter().collect()
 }
 
 fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {

@@ -20,7 +20,7 @@
 //! whose thrust is at most `T`; attitude and rates only take freedom away. The bound is the largest over several `n`.
 
 use nalgebra::Vector2;
-use quad_dynamics::Motion;
+use quad_dynamics::{GRAVITY, Motion};
 
 /// How fast a vehicle can speed up and brake along a line, whatever else it does.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,6 +58,13 @@ impl Envelope {
     /// Of a vehicle whose speed and acceleration are bounded and which feels no drag.
     pub(crate) fn of_limits(speed: f64, acceleration: f64) -> Self {
         Self { acceleration, drag: NEGLIGIBLE_DRAG, top_speed: speed }
+    }
+
+    /// About the greatest acceleration and speed (m/s^2, m/s) while part of the thrust carries the weight.
+    pub(crate) fn level_flight(&self) -> [f64; 2] {
+        let a = self.acceleration;
+        let level = if a > GRAVITY { (a * a - GRAVITY * GRAVITY).sqrt() } else { a };
+        [level, (level / self.drag).sqrt().min(self.top_speed)]
     }
 
     /// The speed at which drag eats all of the acceleration, or the top speed if that is less.
