@@ -1,8 +1,11 @@
 //! The command line.
 
-use crate::command::{self, PlanRequest, ReportRequest};
+use crate::command::{self, FlyRequest, PlanRequest, ReportRequest};
+use crate::execution::Way;
 use crate::failure::Failure;
-use crate::words::TRANSCRIPTIONS;
+use crate::link::address::Address;
+use crate::link::settings::{Reach, SafeAction, Settings};
+use crate::words::{self, TRANSCRIPTIONS};
 use clap::{Parser, Subcommand, ValueEnum};
 use planner::Transcription;
 use std::path::PathBuf;
@@ -41,6 +44,15 @@ Examples:
   ground-station report pasture.toml --out pasture.html  another mission, another file
 A link to a moment: report.html#t=12.5";
 
+const FLY_EXAMPLES: &str = "\
+Examples:
+  ground-station fly field-ardupilot.toml --connect udpin:0.0.0.0:14550 --dry-run     checks, nothing is changed
+  ground-station fly field-ardupilot.toml --connect udpin:0.0.0.0:14550 --arm --log a.tlog
+  ground-station fly field.toml --connect tcpout:127.0.0.1:5760 --way loiter-items    uploads and reads back
+
+Without --arm nothing moves. While it flies, say hold, return or land on the standard input, for all vehicles or with
+a vehicle's number. A pilot who changes the mode has the last word: the link then lets go of that vehicle.";
+
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -50,6 +62,9 @@ pub enum Command {
     /// Plans a mission and writes one HTML page: map, flight through time, charts, tables; opens in any browser, offline.
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArguments),
+    /// Flies a mission on real or simulated vehicles over MAVLink.
+    #[command(after_help = FLY_EXAMPLES)]
+    Fly(FlyArguments),
     /// Says all that is wrong with a mission file.
     Check {
         /// The mission file (TOML).
@@ -101,6 +116,115 @@ pub struct ReportArguments {
     pub quiet: bool,
 }
 
+/// Arguments of `fly`.
+#[derive(Debug, clap::Args)]
+pub struct FlyArguments {
+    /// The mission file (TOML); without one, the built-in field mission.
+    pub file: Option<PathBuf>,
+    /// udpin:HOST:PORT, udpout:HOST:PORT or tcpout:HOST:PORT.
+    #[arg(long, value_name = "ADDRESS")]
+    pub connect: Address,
+    /// How the plan is flown.
+    #[arg(long, value_parser = parse_way, default_value = "stream")]
+    pub way: Way,
+    /// Only look: nothing is sent that changes a vehicle.
+    #[arg(long, conflicts_with = "arm")]
+    pub dry_run: bool,
+    /// Arm, take off and fly.
+    #[arg(long)]
+    pub arm: bool,
+    /// System ids of the vehicles in the order of the plan; 1,2,3,.. if not given.
+    #[arg(long, value_delimiter = ',', value_name = "IDS")]
+    pub systems: Vec<u8>,
+    /// Setpoints per second.
+    #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = parse_setpoint_rate)]
+    pub rate: f64,
+    /// Least battery before the start (percent).
+    #[arg(long, value_name = "PERCENT", default_value_t = 50)]
+    pub least_battery: u8,
+    /// Battery at which a vehicle returns (percent).
+    #[arg(long, value_name = "PERCENT", default_value_t = 20)]
+    pub return_battery: u8,
+    /// Distance from the plan at which a vehicle is stopped (m).
+    #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = parse_positive)]
+    pub deviation: f64,
+    /// Silence after which a link counts as lost (s).
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = parse_positive)]
+    pub link_timeout: f64,
+    /// What a vehicle is told whose link is lost: hold, return or land.
+    #[arg(long, value_parser = parse_action, default_value = "return")]
+    pub on_link_loss: SafeAction,
+    /// What a vehicle is told that is too far from its plan: hold, return or land.
+    #[arg(long, value_parser = parse_action, default_value = "hold")]
+    pub on_deviation: SafeAction,
+    /// Log every packet of the session into a new file (.tlog).
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// Read hold, return and land from a file (or pipe) instead of the standard input.
+    #[arg(long, value_name = "FILE")]
+    pub commands: Option<PathBuf>,
+    /// No progress bar.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl FlyArguments {
+    fn request(self) -> FlyRequest {
+        let reach = match (self.dry_run, self.arm) {
+            (true, _) => Reach::Check,
+            (_, true) => Reach::Fly,
+            _ => Reach::Upload,
+        };
+        let settings = Settings {
+            reach,
+            rate: self.rate,
+            least_battery: self.least_battery,
+            return_battery: self.return_battery,
+            deviation: self.deviation,
+            link_timeout: self.link_timeout,
+            on_link_loss: self.on_link_loss,
+            on_deviation: self.on_deviation,
+            ..Settings::default()
+        };
+        FlyRequest {
+            file: self.file,
+            address: self.connect,
+            way: self.way,
+            systems: self.systems,
+            settings,
+            log: self.log,
+            commands: self.commands,
+            quiet: self.quiet,
+        }
+    }
+}
+
+/// One of the words of a table.
+fn parse_word<T: Copy>(words: &[(&'static str, T)], text: &str) -> Result<T, String> {
+    let found = words.iter().find(|(word, _)| *word == text).map(|&(_, value)| value);
+    let list = || words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
+    found.ok_or_else(|| format!("give one of {}", list()))
+}
+
+fn parse_way(text: &str) -> Result<Way, String> {
+    parse_word(&words::WAYS, text)
+}
+
+fn parse_action(text: &str) -> Result<SafeAction, String> {
+    parse_word(&words::SAFE_ACTIONS, text)
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "give a number above 0".to_owned())
+}
+
+/// PX4 lets go below 2 Hz; above 100 Hz radios are full.
+fn parse_setpoint_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (4.0..=100.0).contains(rate));
+    rate.ok_or_else(|| "give a number of setpoints per second from 4 to 100".to_owned())
+}
+
 /// A transcription on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TranscriptionWord(Transcription);
@@ -136,6 +260,7 @@ fn parse_rate(text: &str) -> Result<f64, String> {
 pub fn run(cli: Cli) -> Result<String, Failure> {
     match cli.command {
         Command::Check { file } => command::check(&file).map(|line| format!("{line}\n")),
+        Command::Fly(arguments) => command::fly(&arguments.request(), &mut |line| println!("{line}")),
         Command::Report(arguments) => {
             let ReportArguments { file, out, force, rate, quiet } = arguments;
             let text = command::report(&ReportRequest { file, out, force, rate, quiet })?;

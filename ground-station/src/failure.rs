@@ -46,6 +46,20 @@ pub enum Failure {
         /// The vehicle, from 0.
         vehicle: usize,
     },
+    /// The connection to the vehicles could not be made, or broke.
+    #[error("{address}: {}", reason(source))]
+    Link {
+        /// The connection.
+        address: String,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// Vehicles did not do what was asked.
+    #[error("{}", list("not done as asked", _0))]
+    Flight(Vec<String>),
+    /// Something that this mission, way or autopilot does not allow.
+    #[error("{0}")]
+    Refused(String),
     /// A file could not be put into its format.
     #[error("the plan cannot be put into its file format ({source}); nothing was written")]
     Format {

@@ -52,6 +52,7 @@ pub mod export;
 pub mod failure;
 pub mod geodesy;
 pub mod input;
+pub mod link;
 pub mod page;
 pub mod plot;
 pub mod problem;

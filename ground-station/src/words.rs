@@ -2,6 +2,7 @@
 
 use crate::execution::Way;
 use crate::input::Autopilot;
+use crate::link::settings::SafeAction;
 use planner::{Direction, Model, Objective, Pipeline, SolverStatus, Transcription};
 
 /// Words for [`Autopilot`].
@@ -13,6 +14,9 @@ pub const WAYS: [(&str, Way); 4] = [
     ("polygon", Way::Polygon),
     ("live-orbit", Way::LiveOrbit),
 ];
+/// Words for [`SafeAction`].
+pub const SAFE_ACTIONS: [(&str, SafeAction); 3] =
+    [("hold", SafeAction::Hold), ("return", SafeAction::Return), ("land", SafeAction::Land)];
 /// Words for [`Objective`].
 pub const OBJECTIVES: [(&str, Objective); 2] =
     [("makespan", Objective::Makespan), ("total", Objective::Total)];

@@ -1,5 +1,6 @@
 //! Everything that a plan is written as, in memory.
 
+use crate::execution::Way;
 use crate::export::folder::OutputFile;
 use crate::export::plan_json::PlanDocument;
 use crate::export::qgc::{qgc_mission, vehicle_mission};
@@ -70,7 +71,12 @@ fn autopilot_mission(
 ) -> Result<Option<OutputFile>, Failure> {
     let vehicle = plan.vehicles.get(index).filter(|vehicle| !vehicle.legs.is_empty());
     let Some((vehicle, origin)) = vehicle.zip(file.origin) else { return Ok(None) };
-    let mission = qgc_mission(&vehicle_mission(file, plan, vehicle), file.autopilot, &origin);
+    let mission = qgc_mission(
+        &vehicle_mission(file, plan, vehicle),
+        file.autopilot,
+        Way::of_missions(file.autopilot),
+        &origin,
+    );
     let name = format!("vehicle-{}.plan", index + 1);
     notes.add(&name, mission.notes);
     if plan.vehicles.iter().filter(|vehicle| !vehicle.legs.is_empty()).count() > 1 {

@@ -4,14 +4,15 @@
 //! of waypoints around the target with the camera held on it. Neither flies the plan as planned: what the autopilot will do
 //! instead is said in plain words in [`QgcMission::notes`].
 
-mod ardupilot;
 mod document;
 mod from_plan;
-mod px4;
+mod loiter_items;
+mod polygon;
 
 pub use document::{CircleFence, Fence, FenceCircle, Item, Mission, PlanFile, Rally};
 pub use from_plan::vehicle_mission;
 
+use crate::execution::Way;
 use crate::geodesy::Origin;
 use crate::input::Autopilot;
 use planner::Direction;
@@ -72,19 +73,17 @@ pub struct QgcMission {
     pub notes: Vec<String>,
 }
 
-/// The mission of one vehicle for its autopilot.
+/// The mission of one vehicle for its autopilot: with loiter items where the way says so, else with polygons.
 #[must_use]
-pub fn qgc_mission(vehicle: &VehicleMission, autopilot: Autopilot, origin: &Origin) -> QgcMission {
+pub fn qgc_mission(vehicle: &VehicleMission, autopilot: Autopilot, way: Way, origin: &Origin) -> QgcMission {
     let place = Place { origin };
-    let (items, mut notes, firmware) = match autopilot {
-        Autopilot::ArduPilot => {
-            let (items, notes) = ardupilot::items(vehicle, &place);
-            (items, notes, document::FIRMWARE_ARDUPILOT)
-        }
-        Autopilot::Px4 => {
-            let (items, notes) = px4::items(vehicle, &place);
-            (items, notes, document::FIRMWARE_PX4)
-        }
+    let (items, mut notes) = match way {
+        Way::LoiterItems => loiter_items::items(vehicle, &place),
+        _ => polygon::items(vehicle, autopilot, &place),
+    };
+    let firmware = match autopilot {
+        Autopilot::ArduPilot => document::FIRMWARE_ARDUPILOT,
+        Autopilot::Px4 => document::FIRMWARE_PX4,
     };
     let (fence, left_out) = fence(vehicle, &place);
     if left_out > 0 {

@@ -76,7 +76,8 @@ fn ardupilot_gets_turns_with_the_sign_of_the_direction() -> Result<(), Box<dyn s
         task([20.0, 0.0], 2.2, 380f64.to_radians(), Direction::Clockwise),
         task([30.0, 0.0], 300.0, 0.5 * TAU, Direction::Clockwise),
     ];
-    let mission = qgc_mission(&vehicle(circles), Autopilot::ArduPilot, &ORIGIN);
+    let mission =
+        qgc_mission(&vehicle(circles), Autopilot::ArduPilot, Way::of_missions(Autopilot::ArduPilot), &ORIGIN);
     let items = load(&mission.plan.to_text()?)?;
     let commands: Vec<u64> = items.iter().map(|item| item.0).collect();
     assert_eq!(commands, [22, 178, 18, 18, 18, 16, 21]);
@@ -104,7 +105,7 @@ fn ardupilot_gets_turns_with_the_sign_of_the_direction() -> Result<(), Box<dyn s
 #[test]
 fn px4_gets_polygons_and_no_loiter_items() -> Result<(), Box<dyn std::error::Error>> {
     let circles = vec![task([10.0, 0.0], 3.0, TAU, Direction::CounterClockwise)];
-    let mission = qgc_mission(&vehicle(circles), Autopilot::Px4, &ORIGIN);
+    let mission = qgc_mission(&vehicle(circles), Autopilot::Px4, Way::of_missions(Autopilot::Px4), &ORIGIN);
     let items = load(&mission.plan.to_text()?)?;
     let commands: Vec<u64> = items.iter().map(|item| item.0).collect();
     let mut wanted = vec![22, 178, 16, 195, 178];
@@ -122,7 +123,7 @@ proptest! {
     ) {
         let direction = if clockwise { Direction::Clockwise } else { Direction::CounterClockwise };
         let circle = CircleTask { entry_angle: entry, ..task([50.0, -20.0], radius, sweep, direction) };
-        let mission = qgc_mission(&vehicle(vec![circle]), Autopilot::Px4, &ORIGIN);
+        let mission = qgc_mission(&vehicle(vec![circle]), Autopilot::Px4, Way::of_missions(Autopilot::Px4), &ORIGIN);
         let waypoints = mission.plan.mission.items.iter().filter(|item| item.command == 16);
         let mut corners: Vec<[f64; 2]> = waypoints.map(|item| {
             let at = |index: usize| item.params[index].unwrap_or(f64::NAN);
@@ -146,7 +147,7 @@ proptest! {
     #[test]
     fn ardupilot_items_survive_its_truncation(radius in 0.3..2000.0f64, sweep in 0.1..40.0f64) {
         let circle = task([0.0, 0.0], radius, sweep, Direction::Clockwise);
-        let mission = qgc_mission(&vehicle(vec![circle]), Autopilot::ArduPilot, &ORIGIN);
+        let mission = qgc_mission(&vehicle(vec![circle]), Autopilot::ArduPilot, Way::of_missions(Autopilot::ArduPilot), &ORIGIN);
         let item = mission.plan.mission.items.iter().find(|item| item.command == 18);
         let params = item.map_or([None; 7], |item| item.params).map(|param| param.unwrap_or(f64::NAN));
         let kept_radius = if params[2] > 255.0 { (params[2] / 10.0).trunc() * 10.0 } else { params[2].trunc() };
@@ -158,6 +159,7 @@ proptest! {
 
 #[test]
 fn a_vehicle_that_stays_at_home_has_no_items() {
-    let mission = qgc_mission(&vehicle(vec![]), Autopilot::ArduPilot, &ORIGIN);
+    let mission =
+        qgc_mission(&vehicle(vec![]), Autopilot::ArduPilot, Way::of_missions(Autopilot::ArduPilot), &ORIGIN);
     assert!(mission.plan.mission.items.is_empty());
 }

@@ -1,0 +1,168 @@
+//! A session and its vehicles with a bad radio between them and time that only the test moves.
+
+use crate::peer::{Firmware, Peer};
+use ground_station::command::tasks;
+use ground_station::execution::Way;
+use ground_station::geodesy::Origin;
+use ground_station::input::{self, MissionFile};
+use ground_station::link::frames::{Decoder, frame};
+use ground_station::link::pilot::Task;
+use ground_station::link::session::{Event, Session};
+use ground_station::link::settings::Settings;
+use planner::{Options, Plan};
+use std::path::Path;
+use std::sync::OnceLock;
+
+/// What the radio does to each frame.
+#[derive(Clone, Copy, Default)]
+pub struct Radio {
+    /// Share of frames that are lost.
+    pub loss: f64,
+    /// Share of frames that arrive twice.
+    pub twice: f64,
+    /// Greatest delay (s); frames overtake each other.
+    pub delay: f64,
+    /// Frames that may be under way in each direction; more are lost.
+    pub room: usize,
+}
+
+pub struct Air {
+    pub session: Session,
+    pub peers: Vec<Peer>,
+    pub events: Vec<Event>,
+    pub time: f64,
+    radio: Radio,
+    random: u64,
+    up: Vec<(f64, u8, Vec<u8>)>,
+    down: Vec<(f64, Vec<u8>)>,
+    sequence: u8,
+}
+
+/// Three targets, three vehicles, inside ArduCopter's shaping limits.
+fn mission_text(autopilot: &str) -> String {
+    format!(
+        r#"
+        name = "three"
+        origin = {{ latitude = 42.0308, longitude = -93.6319, altitude = 290.0 }}
+        autopilot = "{autopilot}"
+        [depot]
+        position = [0.0, 0.0]
+        [fleet]
+        vehicles = 3
+        preset = "survey-450"
+        [loiter]
+        radius = 2.5
+        height = 2.0
+        sweep = 380.0
+        yaw = "at-target"
+        acceleration_limit = 2.0
+        [transition]
+        model = "jerk-limited"
+        entries = 2
+        segments = 20
+        [targets]
+        positions = [[14.0, 6.0], [-9.0, 14.0], [3.0, -18.0]]
+        "#
+    )
+}
+
+/// The mission for an autopilot and its plan, planned once.
+pub fn planned(firmware: Firmware) -> (MissionFile, &'static Plan) {
+    static PLAN: OnceLock<Plan> = OnceLock::new();
+    let word = if firmware == Firmware::ArduCopter { "ardupilot" } else { "px4" };
+    let file = input::parse("three.toml", &mission_text(word), Path::new("")).expect("the mission is right");
+    let plan =
+        PLAN.get_or_init(|| planner::plan(&file.mission, &Options::default()).expect("it can be planned"));
+    (file, plan)
+}
+
+pub fn tasks_of(firmware: Firmware, way: Way) -> (Vec<Task>, Origin) {
+    let (file, plan) = planned(firmware);
+    let tasks = tasks(&file, plan, way, &[], &mut |_| ()).expect("the plan belongs to the mission");
+    (tasks, file.origin.expect("it has one"))
+}
+
+/// A vehicle on each pad.
+pub fn peers_of(firmware: Firmware, tasks: &[Task], origin: &Origin) -> Vec<Peer> {
+    let peer = |task: &Task| Peer::new(task.system, firmware, origin.geographic([task.pad[0], task.pad[1]]));
+    tasks.iter().map(peer).collect()
+}
+
+impl Air {
+    pub fn new(firmware: Firmware, way: Way, settings: Settings, radio: Radio, seed: u64) -> Self {
+        let (tasks, origin) = tasks_of(firmware, way);
+        Self {
+            peers: peers_of(firmware, &tasks, &origin),
+            session: Session::new(tasks, origin, settings, 0.0),
+            events: Vec::new(),
+            time: 0.0,
+            radio,
+            random: seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1,
+            up: Vec::new(),
+            down: Vec::new(),
+            sequence: 0,
+        }
+    }
+
+    /// From 0 to 1 (xorshift).
+    fn random(&mut self) -> f64 {
+        self.random ^= self.random << 13;
+        self.random ^= self.random >> 7;
+        self.random ^= self.random << 17;
+        (self.random >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// When copies of a frame arrive.
+    fn arrivals(&mut self, under_way: usize) -> Vec<f64> {
+        if self.random() < self.radio.loss || self.radio.room > 0 && under_way >= self.radio.room {
+            return Vec::new();
+        }
+        let copies = if self.random() < self.radio.twice { 2 } else { 1 };
+        (0..copies).map(|_| self.time + self.radio.delay * self.random()).collect()
+    }
+
+    /// Two hundredths of a second.
+    pub fn tick(&mut self) {
+        self.time += 0.02;
+        for (system, message) in self.session.poll(self.time) {
+            self.sequence = self.sequence.wrapping_add(1);
+            let bytes = frame(255, 190, self.sequence, &message);
+            for at in self.arrivals(self.up.len()) {
+                self.up.push((at, system, bytes.clone()));
+            }
+        }
+        self.events.extend(self.session.take_events());
+        let due = self.up.extract_if(.., |(at, ..)| *at <= self.time).collect::<Vec<_>>();
+        for (_, system, bytes) in due {
+            self.peers.iter_mut().filter(|peer| peer.system == system).for_each(|peer| peer.receive(&bytes));
+        }
+        for index in 0..self.peers.len() {
+            self.peers[index].advance(self.time);
+            for bytes in self.peers[index].take() {
+                for at in self.arrivals(self.down.len()) {
+                    self.down.push((at, bytes.clone()));
+                }
+            }
+        }
+        let due = self.down.extract_if(.., |(at, _)| *at <= self.time).collect::<Vec<_>>();
+        for (_, bytes) in due {
+            for received in Decoder::default().push(&bytes) {
+                self.session.receive(&received, self.time);
+            }
+        }
+    }
+
+    /// To the end of the session, or to `limit` (s).
+    pub fn run(&mut self, limit: f64) {
+        while self.time < limit && !self.session.is_over() {
+            self.tick();
+        }
+        self.events.extend(self.session.take_events());
+        assert!(self.session.is_over(), "not over after {limit} s:\n{}", self.told());
+    }
+
+    pub fn told(&self) -> String {
+        let line = |event: &Event| format!("{:.2} {:?} {}\n", event.time, event.vehicle, event.text);
+        self.events.iter().map(line).collect()
+    }
+}
