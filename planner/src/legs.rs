@@ -40,7 +40,10 @@ impl Airspace<'_> {
 
     /// Flies a route from its pad and back, each leg by the fastest of its candidates, starting at time 0.
     pub(crate) fn fly(&self, vehicle: usize, pad: [f64; 3], route: &[usize]) -> Result<Vec<Leg>, Error> {
-        self.fly_by(vehicle, pad, route, |_, here, orbit| self.to_circle(here, orbit))
+        let legs = self.fly_by(vehicle, pad, route, |_, here, orbit| self.to_circle(here, orbit))?;
+        // The way home, where there is one, has a single candidate.
+        self.watch.advance(usize::from(!legs.is_empty()));
+        Ok(legs)
     }
 
     /// Flies a route by given entries, one per circle; with [`Entries::Free`] each is where the search starts.
@@ -206,7 +209,6 @@ impl Airspace<'_> {
             Hint::Time(self.least_time(here, &there)),
             f64::INFINITY,
         );
-        self.watch.advance(1);
         let outcome = outcome_of(&solved);
         (solved.ok(), vec![Candidate { entry: None, outcome }])
     }
