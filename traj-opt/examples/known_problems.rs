@@ -1,6 +1,6 @@
 //! Solves classic optimal control problems and compares them with their known values.
 //!
-//! `cargo run --release -p traj-opt --example known_problems [NAME] [--json] [--scheme hs|rk|trap] [--segments N]`
+//! `cargo run --release -p traj-opt --example known_problems [NAME] [--json] [--scheme hs|compressed|radau|trap|rk] [--segments N]`
 //!
 //! With `--segments` the mesh is uniform and not refined.
 
@@ -24,9 +24,11 @@ fn main() {
     let transcription = match scheme.as_deref() {
         Some("rk") => Transcription::RungeKutta { substeps: 2 },
         Some("trap") => Transcription::Trapezoidal,
+        Some("compressed") => Transcription::CompressedHermiteSimpson,
+        Some("radau") => Transcription::LegendreGaussRadau { degree: 3 },
         _ => Transcription::HermiteSimpson,
     };
-    let tolerance = if transcription == Transcription::HermiteSimpson { 1e-7 } else { 1e-5 };
+    let tolerance = if transcription.order() > 2 { 1e-7 } else { 1e-5 };
     let mut objects = vec![];
     if !json {
         println!(

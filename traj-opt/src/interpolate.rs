@@ -10,12 +10,23 @@ pub(crate) struct Nodes<const NX: usize> {
     pub states: Vec<SVector<f64, NX>>,
     /// Derivative at the left and right end of each interval.
     pub slopes: Vec<[SVector<f64, NX>; 2]>,
+    /// Intervals that share one polynomial through their nodes instead; 0 for none.
+    pub group: usize,
 }
 
 impl<const NX: usize> Nodes<NX> {
     pub fn state_at(&self, time: f64) -> SVector<f64, NX> {
         let last = self.times.len() - 2;
         let k = self.times.partition_point(|&t| t <= time).saturating_sub(1).min(last);
+        if self.group > 0 {
+            let first = k - k % self.group;
+            let nodes = first..=first + self.group;
+            return polynomial(
+                &self.times[nodes.clone()],
+                &self.states[nodes],
+                time.clamp(self.times[0], self.times[last + 1]),
+            );
+        }
         let h = self.times[k + 1] - self.times[k];
         let s = if h > 0.0 { ((time - self.times[k]) / h).clamp(0.0, 1.0) } else { 0.0 };
         let (a, b) = (self.states[k], self.states[k + 1]);

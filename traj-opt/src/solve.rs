@@ -147,11 +147,21 @@ fn nodes<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
                 });
             }
             Transcription::Trapezoidal => push(end, next, [0, 1]),
-            Transcription::HermiteSimpson => {
+            Transcription::HermiteSimpson | Transcription::CompressedHermiteSimpson => {
                 let at = layout.middle(k);
                 let middle = program.point_time(k, 0.5, tf).time;
                 push(middle, SVector::from_column_slice(&w[at..at + NX]), [0, 1]);
                 push(end, next, [1, 2]);
+            }
+            Transcription::LegendreGaussRadau { .. } => {
+                nodes.group = layout.n_inner + 1;
+                for i in 0..layout.n_inner {
+                    let time = program.point_time(k, program.transcription.control_points()[i], tf).time;
+                    nodes.times.push(time);
+                    nodes.states.push(crate::dense::vector(w, layout.inner(k, i)));
+                }
+                nodes.times.push(end);
+                nodes.states.push(next);
             }
         }
     }

@@ -1,7 +1,10 @@
-//! Separated Hermite-Simpson collocation: middle state `xm = (x0 + x1)/2 + h/8 (f0 - f1)` and `x1 = x0 + h/6 (f0 + 4 fm + f1)`,
+//! Hermite-Simpson collocation: middle state `xm = (x0 + x1)/2 + h/8 (f0 - f1)` and `x1 = x0 + h/6 (f0 + 4 fm + f1)`,
 //! one control vector at either end and in the middle (C. R. Hargraves, S. W. Paris, *Direct trajectory optimization using
 //! nonlinear programming and collocation*, J. Guidance 10, 1987; separated form: J. T. Betts, *Practical Methods for Optimal
 //! Control*, section 4.5). The middle state and the implicit end state are eliminated from the linearised equations.
+//!
+//! The separated form has the middle states as variables; the compressed form sets them to the interpolant at every point that is
+//! tried. Both have the same Newton system.
 
 use super::layout::Layout;
 use super::program::{Duals, Linearisation, Program, Values, add_control_block};
@@ -18,6 +21,25 @@ const HERMITE: [f64; 3] = [1.0 / 8.0, 0.0, -1.0 / 8.0];
 
 fn states<const NX: usize>(layout: &Layout, w: &[f64], k: usize) -> [SVector<f64, NX>; 3] {
     [layout.state(k), layout.middle(k), layout.state(k + 1)].map(|offset| vector(w, offset))
+}
+
+/// Sets the middle states to the Hermite interpolants of the knots: the compressed form.
+pub(crate) fn set_middles<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    program: &Program<NX, NU, P>,
+    layout: &Layout,
+    w: &mut [f64],
+) {
+    for k in 0..layout.n_segments {
+        let ends = [0, 1].map(|end| {
+            let at = program.point_time(k, end as f64, w[layout.time]);
+            let x = program.state(layout, w, k + end);
+            let u = program.control(layout, w, k, 2 * end);
+            (x, program.problem.dynamics().derivative(at.time, &x, &u) * at.h)
+        });
+        let middle = (ends[0].0 + ends[1].0) * 0.5 + ends[0].1 * HERMITE[0] + ends[1].1 * HERMITE[2];
+        let at = layout.middle(k);
+        w[at..at + NX].copy_from_slice(middle.as_slice());
+    }
 }
 
 /// Defects of segment `k`; returns its running cost.

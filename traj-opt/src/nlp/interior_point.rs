@@ -10,6 +10,7 @@ use super::program::{Duals, Linearisation, Program, Scratch, Values};
 use super::quadratic::{Quadratic, Rhs, Step};
 use super::riccati::{NotConvex, Regularisation, Riccati};
 use super::setup;
+use crate::transcription::MAX_DEGREE;
 use crate::{Guess, Iteration, Options, Problem, Residuals, Status};
 use nalgebra::SVector;
 use std::ops::ControlFlow;
@@ -128,7 +129,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             v.clear();
             v.resize(self.layout.n_variables, 0.0);
         }
-        let implicit = !matches!(program.transcription, crate::Transcription::RungeKutta { .. });
+        let implicit = program.transcription.resolves_end();
         self.lin.resize(&self.layout, nb, implicit);
         self.lq.resize(n, m, nb);
         self.rhs.resize(n, m, nb);
@@ -166,7 +167,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     /// Slacks at the values of their constraints, inside the bounds; scales of path and boundary rows from their gradients.
     fn place_slacks<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {
         let layout = &self.layout;
-        program.evaluate(layout, &self.rows, &self.w, &mut self.scratch, &mut self.values);
+        program.evaluate(layout, &self.rows, &mut self.w, &mut self.scratch, &mut self.values);
         for i in 0..self.values.path.len() {
             self.w[layout.path_slacks + i] = self.values.path[i];
         }
@@ -176,7 +177,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             }
         }
         self.bounds.push_inside(&mut self.w, DEFAULT_PUSH);
-        program.evaluate(layout, &self.rows, &self.w, &mut self.scratch, &mut self.values);
+        program.evaluate(layout, &self.rows, &mut self.w, &mut self.scratch, &mut self.values);
         program.linearise(layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
         let n = layout.n_path;
         let scales = &program.scales;
@@ -443,6 +444,15 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             if worst < 1e3 * self.objective_scale {
                 for k in 0..layout.n_segments {
                     let costate = self.step.costate[k];
+                    if self.lin.stages.is_used() {
+                        let q = layout.n_inner;
+                        let mut forces = [SVector::zeros(); MAX_DEGREE];
+                        forces[q] = costate;
+                        self.lin.stages.multipliers(k, &mut forces[..=q]);
+                        self.duals.middle[k * q..(k + 1) * q].copy_from_slice(&forces[..q]);
+                        self.duals.defect[k] = forces[q];
+                        continue;
+                    }
                     self.duals.defect[k] = match self.lin.resolve.get(k) {
                         Some(resolve) => crate::dense::tr_mul_vec(resolve, &costate),
                         None => costate,

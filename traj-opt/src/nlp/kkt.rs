@@ -54,6 +54,9 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         }
         self.add_path(lq);
         self.add_middles(lq);
+        if self.lin.stages.is_used() {
+            self.add_stages(lq);
+        }
     }
 
     /// `J' Sigma J` of path constraints at the knots.
@@ -145,7 +148,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     }
 
     /// Gradient of the barrier Lagrangian with respect to variable `i`.
-    fn gradient(&self, i: usize) -> f64 {
+    pub(super) fn gradient(&self, i: usize) -> f64 {
         self.lin.lagrangian[i] + self.bounds.gradient(self.w, i, self.mu)
     }
 
@@ -200,6 +203,10 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
             }
         }
         for k in 0..layout.n_segments {
+            if self.lin.stages.is_used() {
+                self.add_stage_gradients(values, k, rhs);
+                continue;
+            }
             let (offset, c) = self.offsets(values, k);
             rhs.c[k] = c;
             if layout.has_middle {
@@ -209,7 +216,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     }
 
     /// Change of a path multiplier when its point does not move.
-    fn slack_force(&self, values: &Values<NX>, row: usize) -> f64 {
+    pub(super) fn slack_force(&self, values: &Values<NX>, row: usize) -> f64 {
         let index = self.layout.path_slacks + row;
         self.bounds.sigma(self.w, index) * values.path[row] + self.gradient(index)
     }
@@ -283,6 +290,10 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     /// Middle state and defect multipliers of one segment.
     fn expand_segment(&self, values: &Values<NX>, step: &Step<NX>, k: usize, out: &mut Direction<NX>) {
         let layout = self.layout;
+        if self.lin.stages.is_used() {
+            self.expand_stages(values, step, k, out);
+            return;
+        }
         let mut costate = step.costate[k];
         if !layout.has_middle {
             out.duals.defect[k] =

@@ -52,7 +52,13 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         for i in 0..self.w.len() {
             self.trial[i] = self.w[i] + alpha * direction[i];
         }
-        program.evaluate(&self.layout, &self.rows, &self.trial, &mut self.scratch, &mut self.trial_values);
+        program.evaluate(
+            &self.layout,
+            &self.rows,
+            &mut self.trial,
+            &mut self.scratch,
+            &mut self.trial_values,
+        );
         let theta = self.theta(&self.trial_values);
         let phi = self.phi(&self.trial, &self.trial_values);
         (theta, self.filter.judge(origin, alpha, theta, phi))

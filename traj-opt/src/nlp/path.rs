@@ -179,6 +179,13 @@ fn add_hessian<const NX: usize, const NU: usize>(
     }
     match point.place {
         Place::Middle => {
+            if out.stages.is_used() {
+                let inner = &mut out.stages.inner[k * layout.n_inner + point.local];
+                inner.hxx += h.state_state;
+                inner.hxu += h.state_control;
+                inner.hxp += xp;
+                return;
+            }
             out.middles[k].hxx += h.state_state;
             out.middles[k].hxu += h.state_control;
             out.middles[k].hxp += xp;

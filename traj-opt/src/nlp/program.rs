@@ -4,7 +4,8 @@ use super::boundary::BoundaryRows;
 use super::layout::Layout;
 use super::quadratic::Quadratic;
 use super::running::{PointTerms, PointTime};
-use super::{boundary, hermite_simpson, path, runge_kutta, trapezoidal};
+use super::stages::Stages;
+use super::{boundary, hermite_simpson, path, radau, runge_kutta, trapezoidal};
 use crate::dense::{Kernel, dispatch, vector};
 use crate::{Bounds, Mesh, Problem, Scales, Transcription};
 use nalgebra::{SMatrix, SVector};
@@ -64,6 +65,7 @@ pub(crate) struct Linearisation<const NX: usize, const NU: usize> {
     /// Inverse of the derivative of each defect with respect to the segment's end state, negated; empty for explicit methods.
     pub resolve: Vec<SMatrix<f64, NX, NX>>,
     pub middles: Vec<Middle<NX, NU>>,
+    pub stages: Stages<NX, NU>,
     /// Columns `d xm / d u`, m a segment.
     pub middle_su: Vec<SVector<f64, NX>>,
     pub path_x: Vec<SVector<f64, NX>>,
@@ -112,7 +114,7 @@ impl<const NX: usize> Values<NX> {
     pub fn resize(&mut self, layout: &Layout, n_boundary: usize) {
         let n = layout.n_segments;
         self.defect.resize(n, SVector::zeros());
-        self.middle.resize(if layout.has_middle { n } else { 0 }, SVector::zeros());
+        self.middle.resize(n * layout.n_inner, SVector::zeros());
         self.path.resize(layout.points.len() * layout.n_path, 0.0);
         self.boundary.resize(n_boundary, 0.0);
     }
@@ -125,7 +127,7 @@ impl<const NX: usize> Duals<NX> {
         self.defect.clear();
         self.defect.resize(n, SVector::zeros());
         self.middle.clear();
-        self.middle.resize(if layout.has_middle { n } else { 0 }, SVector::zeros());
+        self.middle.resize(n * layout.n_inner, SVector::zeros());
         self.path.clear();
         self.path.resize(layout.points.len() * layout.n_path, 0.0);
         self.boundary.clear();
@@ -149,12 +151,23 @@ impl<const NX: usize, const NU: usize> Linearisation<NX, NU> {
         };
         self.middles.resize(if layout.has_middle { n } else { 0 }, middle);
         self.middle_su.resize(if layout.has_middle { n * m } else { 0 }, SVector::zeros());
+        self.stages.resize(layout);
         let n_path = layout.points.len() * layout.n_path;
         self.path_x.resize(n_path, SVector::zeros());
         self.path_u.resize(n_path, SVector::zeros());
         self.path_p.resize(n_path, 0.0);
         self.objective.resize(layout.n_variables, 0.0);
         self.lagrangian.resize(layout.n_variables, 0.0);
+    }
+
+    /// Sets the second derivatives at inner states to zero.
+    pub fn clear_inner_hessian(&mut self) {
+        for middle in &mut self.middles {
+            middle.hxx.fill(0.0);
+            middle.hxu.fill(0.0);
+            middle.hxp.fill(0.0);
+        }
+        self.stages.clear_hessian();
     }
 
     /// Adds a vector to part of the Lagrangian's gradient.
@@ -207,15 +220,18 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
         }
     }
 
-    /// Cost and constraint residuals at `w`.
+    /// Cost and constraint residuals at `w`, whose dependent variables are set first.
     pub fn evaluate(
         &self,
         layout: &Layout,
         rows: &BoundaryRows,
-        w: &[f64],
+        w: &mut [f64],
         scratch: &mut Scratch<NX, NU>,
         out: &mut Values<NX>,
     ) {
+        if self.transcription == Transcription::CompressedHermiteSimpson {
+            hermite_simpson::set_middles(self, layout, w);
+        }
         let mut objective = 0.0;
         for k in 0..layout.n_segments {
             objective += match self.transcription {
@@ -223,7 +239,10 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
                     runge_kutta::evaluate(self, layout, substeps, k, w, out)
                 }
                 Transcription::Trapezoidal => trapezoidal::evaluate(self, layout, k, w, out),
-                Transcription::HermiteSimpson => hermite_simpson::evaluate(self, layout, k, w, out),
+                Transcription::HermiteSimpson | Transcription::CompressedHermiteSimpson => {
+                    hermite_simpson::evaluate(self, layout, k, w, out)
+                }
+                Transcription::LegendreGaussRadau { .. } => radau::evaluate(self, layout, k, w, out),
             };
         }
         path::evaluate(self, layout, w, &mut scratch.f, &mut out.path);
@@ -266,8 +285,11 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
                     runge_kutta::linearise(self, layout, substeps, k, w, duals, scratch, out);
                 }
                 Transcription::Trapezoidal => trapezoidal::linearise(self, layout, k, w, duals, second, out),
-                Transcription::HermiteSimpson => {
+                Transcription::HermiteSimpson | Transcription::CompressedHermiteSimpson => {
                     hermite_simpson::linearise(self, layout, k, w, duals, second, out);
+                }
+                Transcription::LegendreGaussRadau { .. } => {
+                    radau::linearise(self, layout, k, w, duals, second, out);
                 }
             }
         }

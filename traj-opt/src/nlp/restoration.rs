@@ -66,11 +66,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         program.linearise(&self.layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
         self.scratch.first_order_only = false;
         self.lin.raw.clear_hessian();
-        for middle in &mut self.lin.middles {
-            middle.hxx.fill(0.0);
-            middle.hxu.fill(0.0);
-            middle.hxp.fill(0.0);
-        }
+        self.lin.clear_inner_hessian();
         self.lin.lagrangian.fill(0.0);
         std::mem::swap(&mut self.lin.raw, &mut self.lq);
         let system = System {
@@ -114,7 +110,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             program.evaluate(
                 &self.layout,
                 &self.rows,
-                &self.trial,
+                &mut self.trial,
                 &mut self.scratch,
                 &mut self.trial_values,
             );

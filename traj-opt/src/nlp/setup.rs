@@ -5,7 +5,7 @@ use super::boundary::BoundaryRows;
 use super::layout::Layout;
 use super::program::Program;
 use crate::error::BoundKind;
-use crate::{Bounds, Error, Guess, Problem, Scales};
+use crate::{Bounds, Error, Guess, Problem, Scales, Transcription};
 use nalgebra::SVector;
 
 /// Refuses inconsistent bounds.
@@ -118,7 +118,13 @@ pub(crate) fn fill_bounds<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         out.lower[i] = b.control_lower[(i - layout.controls) % NU.max(1)];
         out.upper[i] = b.control_upper[(i - layout.controls) % NU.max(1)];
     }
-    for i in layout.middles..layout.time {
+    // the middle states of the compressed form are no variables
+    let first = if program.transcription == Transcription::CompressedHermiteSimpson {
+        layout.time
+    } else {
+        layout.middles
+    };
+    for i in first..layout.time {
         out.lower[i] = b.state_lower[(i - layout.middles) % NX];
         out.upper[i] = b.state_upper[(i - layout.middles) % NX];
     }
@@ -159,9 +165,10 @@ pub(crate) fn fill_guess<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
             let at = layout.control(k, local);
             w[at..at + NU].copy_from_slice(guess.sample(f[k] + s * width).1.as_slice());
         }
-        if layout.has_middle {
-            let at = layout.middle(k);
-            w[at..at + NX].copy_from_slice(guess.sample(f[k] + 0.5 * width).0.as_slice());
+        for i in 0..layout.n_inner {
+            let s = if layout.has_middle { 0.5 } else { program.transcription.control_points()[i] };
+            let at = layout.inner(k, i);
+            w[at..at + NX].copy_from_slice(guess.sample(f[k] + s * width).0.as_slice());
         }
     }
     let b = &program.bounds;
