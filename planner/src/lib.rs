@@ -51,6 +51,7 @@ mod bound;
 mod certificate;
 mod check;
 mod circles;
+mod closed_loop;
 mod entry;
 mod error;
 mod legs;
@@ -71,6 +72,7 @@ pub use mtsp;
 pub use quad_dynamics;
 pub use traj_opt;
 
+pub use closed_loop::Flown;
 pub use error::{Error, Problem};
 pub use mission::{
     Entries, Fleet, LoiterSettings, Mission, Model, Objective, Pipeline, Target, Transcription,

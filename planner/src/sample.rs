@@ -28,13 +28,7 @@ impl<'a> Sampler<'a> {
 
     /// The moment `time` (s after the mission's start) of a vehicle; hover on its pad before and after its flight.
     pub(crate) fn sample(&self, vehicle: usize, time: f64) -> Sample {
-        let planned = &self.plan.vehicles[vehicle];
-        let k = planned.legs.partition_point(|leg| leg.start_time <= time).saturating_sub(1);
-        let flown = planned.legs.get(k).filter(|leg| time >= leg.start_time && time <= leg.end_time());
-        let (motion, phase, circle) = flown.and_then(|leg| self.in_leg(leg, time)).unwrap_or_else(|| {
-            let [x, y, _] = planned.pad;
-            (hover(self.mission, planned.pad, [x + 1.0, y]), Phase::Pad, None)
-        });
+        let (motion, phase, circle) = self.motion(vehicle, time);
         Sample {
             time,
             position: motion.position.into(),
@@ -46,6 +40,17 @@ impl<'a> Sampler<'a> {
             phase,
             circle,
         }
+    }
+
+    /// The motion of a vehicle, what it is doing, and the circle that it flies to or around.
+    pub(crate) fn motion(&self, vehicle: usize, time: f64) -> (Motion, Phase, Option<usize>) {
+        let planned = &self.plan.vehicles[vehicle];
+        let k = planned.legs.partition_point(|leg| leg.start_time <= time).saturating_sub(1);
+        let flown = planned.legs.get(k).filter(|leg| time >= leg.start_time && time <= leg.end_time());
+        flown.and_then(|leg| self.in_leg(leg, time)).unwrap_or_else(|| {
+            let [x, y, _] = planned.pad;
+            (hover(self.mission, planned.pad, [x + 1.0, y]), Phase::Pad, None)
+        })
     }
 
     fn in_leg(&self, leg: &Leg, time: f64) -> Option<(Motion, Phase, Option<usize>)> {

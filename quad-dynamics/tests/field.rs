@@ -1,6 +1,6 @@
 //! Following a planned mission: three vehicles, eight targets, minimum-time transitions (`tests/data/README.md`).
 
-use quad_dynamics::nalgebra::{SVector, Vector4};
+use quad_dynamics::nalgebra::{SVector, Vector3, Vector4};
 use quad_dynamics::simulation::SensorNoise;
 use quad_dynamics::*;
 
@@ -41,8 +41,7 @@ fn worst(all: &[Tracking], of: impl Fn(&Tracking) -> f64) -> f64 {
 }
 
 /// Rotors with lag after a bang-bang plan with a thrust budget of 0.9: rates that jump by 10 rad/s, tilts of 85 degrees,
-/// speeds of 17 m/s. The wish is 0.3 m; the controller reaches 0.38 m from the path and 0.56 m from the place at that time
-/// (`CHANGELOG.md`), and this test keeps it from getting worse.
+/// speeds of 17 m/s; never 0.3 m from where the plan says at that time.
 #[test]
 fn still_air() {
     let vehicle = Vehicle::survey_450();
@@ -52,22 +51,31 @@ fn still_air() {
     for tracking in &flown {
         println!("{tracking:?}");
     }
-    assert!(worst(&flown, |t| t.max_error) < 0.6 && worst(&flown, |t| t.max_cross_track) < 0.42);
-    assert!(worst(&flown, |t| t.rms_cross_track) < 0.22);
-    assert!(flown.iter().all(|t| t.completed == 1.0 && t.extra_length.abs() < 0.02));
+    assert!(worst(&flown, |t| t.max_error) < 0.3);
+    assert!(worst(&flown, |t| t.rms_cross_track) < 0.1);
+    assert!(flown.iter().all(|t| t.completed == 1.0 && t.extra_length.abs() < 0.01));
 }
 
-/// Gusts that belong to a wind of 5 m/s (standard deviation 1 m/s) about the still air of the plan, noise in the estimate:
-/// bounded. Prints the share of runs that stray beyond the 1.5 m between a circle of 3 m and the safe distance of 1.5 m.
+/// Gusts that belong to a wind of 5 m/s, without and with that wind itself (the plan knows nothing of it), noise in the
+/// estimate: bounded. Prints the share of runs that stray beyond the 1.5 m between a circle of 3 m and the safe distance of
+/// 1.5 m.
 #[test]
 fn gusts() {
     let vehicle = Vehicle::survey_450();
-    let options = SimulationOptions::default().with_gusts(5.0, 1.5).with_noise(SensorNoise::typical());
+    let calm = SimulationOptions::default().with_gusts(5.0, 1.5).with_noise(SensorNoise::typical());
+    let windy = calm.with_wind(Vector3::new(3.0, -4.0, 0.0));
     let seeds: Vec<u64> = (0..10).collect();
-    let flown: Vec<Tracking> =
-        plans(&vehicle).iter().flat_map(|plan| simulate_batch(&vehicle, plan, &options, &seeds)).collect();
-    let strayed = flown.iter().filter(|t| t.max_cross_track > 1.5).count();
-    let (error, cross) = (worst(&flown, |t| t.max_error), worst(&flown, |t| t.max_cross_track));
-    println!("error {error:.3} m, cross-track {cross:.3} m, {strayed} of {} runs beyond 1.5 m", flown.len());
-    assert!(error < 3.0 && cross < 1.5 && flown.iter().all(|t| t.completed == 1.0));
+    for (name, options, bound) in [("gusts", calm, 0.8), ("gusts and wind", windy, 3.0)] {
+        let flown: Vec<Tracking> = plans(&vehicle)
+            .iter()
+            .flat_map(|plan| simulate_batch(&vehicle, plan, &options, &seeds))
+            .collect();
+        let strayed = flown.iter().filter(|t| t.max_cross_track > 1.5).count();
+        let (error, cross) = (worst(&flown, |t| t.max_error), worst(&flown, |t| t.max_cross_track));
+        println!(
+            "{name}: error {error:.3} m, cross-track {cross:.3} m, {strayed} of {} runs beyond 1.5 m",
+            flown.len()
+        );
+        assert!(cross < bound && flown.iter().all(|t| t.completed == 1.0));
+    }
 }

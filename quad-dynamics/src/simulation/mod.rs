@@ -25,9 +25,9 @@ pub struct SimulationOptions {
     pub step: f64,
     /// Gains of the controller.
     pub gains: Gains,
-    /// How far ahead the attitude is taken from the plan, s; it makes up for the rotors' lag. Default 0.075.
+    /// How far ahead the attitude is taken from the plan, s; it makes up for the rotors' lag. Default 0.034.
     pub look_ahead: f64,
-    /// Time over which jumps of the planned body rates are spread, s: real bodies cannot jump. Default 0.06.
+    /// Time over which jumps of the planned body rates are spread, s: real bodies cannot jump. Default 0.28.
     pub ramp: f64,
     /// Steady wind, m/s, world. Default none.
     pub wind: Vector3<f64>,
@@ -44,8 +44,8 @@ impl Default for SimulationOptions {
         Self {
             step: 0.002,
             gains: Gains::default(),
-            look_ahead: 0.075,
-            ramp: 0.06,
+            look_ahead: 0.034,
+            ramp: 0.28,
             wind: Vector3::zeros(),
             gusts: Vector3::zeros(),
             noise: SensorNoise::default(),
