@@ -117,6 +117,7 @@ impl Metric for Distances<'_> {
         self.instance.n
     }
 
+    #[inline(always)]
     fn distance(&self, i: usize, j: usize) -> f64 {
         let instance = self.instance;
         if instance.kind == Kind::Explicit {
@@ -126,7 +127,8 @@ impl Metric for Distances<'_> {
         let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
         let euclidean = (dx * dx + dy * dy).sqrt();
         match (instance.kind, self.is_rounded) {
-            (Kind::Euclidean, true) => (euclidean + 0.5).floor(),
+            // As floor(), which is a call of a function where the processor is not known.
+            (Kind::Euclidean, true) => (euclidean + 0.5) as i64 as f64,
             (Kind::Ceiling, true) => euclidean.ceil(),
             (Kind::PseudoEuclidean, true) => (euclidean / 10.0_f64.sqrt()).ceil(),
             (Kind::PseudoEuclidean, false) => euclidean / 10.0_f64.sqrt(),

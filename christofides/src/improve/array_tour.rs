@@ -27,6 +27,13 @@ impl ArrayTour {
         &self.order
     }
 
+    /// The place of a vertex in reading direction.
+    #[inline]
+    pub fn offset(&self, v: u32) -> usize {
+        let k = self.position[v as usize] as usize;
+        if self.is_backward { self.order.len() - 1 - k } else { k }
+    }
+
     #[inline]
     fn after(&self, v: u32) -> u32 {
         let k = self.position[v as usize] as usize + 1;

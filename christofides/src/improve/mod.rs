@@ -2,6 +2,7 @@
 
 mod array_tour;
 mod chain;
+mod kick;
 mod lin_kernighan;
 mod neighbours;
 mod pinned;
@@ -18,7 +19,7 @@ pub(crate) use pinned::Pinned;
 #[cfg(test)]
 pub(crate) use pinned::check_ends;
 
-/// Neighbours in the lists of the local search, all tried in every step: fewer make steps quicker and tours longer.
+/// Neighbours in the lists of the local search: fewer make steps quicker and tours longer.
 const NEIGHBOURS: usize = 8;
 
 /// Below this number of vertices the subsets are searched: as quick, and exact.
