@@ -72,7 +72,8 @@
 //!
 //! Every inequality of the proof on generated metrics against exhaustive optima; matchings against exhaustive ones, against
 //! known optima of two independent solvers, and by their certificates; three spanning-tree algorithms and two exact
-//! algorithms against each other; TSPLIB optima; invariance under relabelling, motion and scaling.
+//! algorithms against each other; TSPLIB optima in all its forms of symmetric distances; invariance under relabelling, motion and
+//! scaling; every public function on coordinates and weights that are huge, tiny, infinite or no numbers.
 //!
 //! # References
 //!

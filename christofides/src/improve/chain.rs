@@ -12,6 +12,10 @@ use std::collections::VecDeque;
 /// Vertices to be looked at between two questions whether to stop.
 const PATIENCE: usize = 256;
 
+/// Improvements per vertex between two kicks, far more than a real descent takes: gains of distances that are not finite
+/// or not symmetric, or that drown in rounding, may be imagined without end.
+const IMPROVEMENTS: usize = 50;
+
 /// How long to go on.
 pub(crate) struct Effort<'a> {
     pub kicks: usize,
@@ -53,6 +57,7 @@ pub(crate) fn chained(
     let mut search = Search::new(metric, neighbours, ArrayTour::new(order));
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(effort.seed);
     let mut looked = 0;
+    let mut improvements = 0;
     let mut kicks = 0;
     // The gain since the last kick, negative while the kick is not yet repaired.
     let mut gain = 0.0;
@@ -66,6 +71,10 @@ pub(crate) fn chained(
                 return search.tour.order().to_vec();
             }
             while let Some(gained) = search.improve_at(v) {
+                improvements += 1;
+                if improvements > IMPROVEMENTS * n {
+                    return search.tour.order().to_vec();
+                }
                 gain += gained;
                 search.touched.iter().for_each(|&u| agenda.push(u));
             }
@@ -80,6 +89,7 @@ pub(crate) fn chained(
             return search.tour.order().to_vec();
         }
         kicks += 1;
+        improvements = 0;
         search.log.clear();
         gain = kick(&mut search, &mut rng);
         search.touched.iter().for_each(|&v| agenda.push(v));

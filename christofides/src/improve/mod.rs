@@ -43,7 +43,7 @@ pub fn improve_path(metric: &impl Metric, path: Path, ends: Ends) -> Result<Path
 
 /// Chained Lin-Kernighan on a tour: `kicks` local double bridges, each repaired and kept if the tour is no longer.
 ///
-/// Deterministic by `seed`; `should_stop` is asked now and then and only cuts the same sequence short.
+/// A tour whose cost is not finite is returned as it is. Deterministic by `seed`; `should_stop` is asked now and then and only cuts the same sequence short.
 ///
 /// # Errors
 /// As [`improve`].
@@ -55,6 +55,9 @@ pub fn chained_improve(
     should_stop: &mut dyn FnMut() -> bool,
 ) -> Result<Tour, Error> {
     let before = Tour::new(metric, tour.into_order())?;
+    if !before.cost().is_finite() {
+        return Ok(before);
+    }
     let effort = Effort { kicks, seed, should_stop };
     let after = Tour::measured(metric, search(metric, before.order(), effort));
     Ok(if after.cost() < before.cost() { after } else { before })
@@ -75,7 +78,7 @@ pub fn chained_improve_path(
     ends.validate(metric.len())?;
     let before = Path::new(metric, path.into_order())?;
     pinned::check_ends(before.order(), ends)?;
-    if metric.len() < 3 {
+    if metric.len() < 3 || !before.cost().is_finite() {
         return Ok(before);
     }
     let pinned = Pinned::new(metric, ends, before.cost());
