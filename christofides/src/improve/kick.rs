@@ -5,8 +5,8 @@ use crate::metric::Metric;
 use rand::Rng;
 use rand::rngs::Xoshiro256PlusPlus;
 
-/// Steps of the random walks that choose the edges of a kick. Of 3 to 50 steps, 30 led to the shortest tours of 400 to
-/// 1000 vertices in equal time.
+/// Steps of the random walks that choose the edges of a kick. On 400 to 1000 vertices in equal
+/// time, 20 to 50 steps gave shorter tours than 3 to 10; among 20 to 50 the differences were within the noise of ten seeds.
 const WALK: usize = 30;
 
 /// Walks to find four different vertices.

@@ -12,7 +12,7 @@ use crate::metric::Metric;
 /// Most steps in a chain.
 const DEPTH: usize = 50;
 
-/// Neighbours of `t4` that are tried: of `t2` all are. More made better tours per step and worse ones per second.
+/// Neighbours of `t4` that are tried: of `t2` all are. Eight gave longer tours in equal time.
 const BREADTH: usize = 5;
 
 /// A sequential exchange of two or three edges.
