@@ -131,8 +131,8 @@ impl Airspace<'_> {
                 break;
             }
             let to_beat = fastest(&arrivals).map_or(f64::INFINITY, |arrival| arrival.transition.duration);
-            let open: Vec<usize> =
-                batch.iter().copied().filter(|&i| entrances[i].lower_bound < to_beat).collect();
+            let promising = |&i: &usize| entrances[i].lower_bound < to_beat || self.watch.exhaustive();
+            let open: Vec<usize> = batch.iter().copied().filter(promising).collect();
             let solved = self.solve_all(here, orbit, &entrances, &open, &arrivals, to_beat);
             self.watch.advance(batch.len());
             for (index, outcome) in open.into_iter().zip(solved) {

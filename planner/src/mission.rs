@@ -184,9 +184,9 @@ pub enum Objective {
 /// How routes are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pipeline {
-    /// The paper's: k-means, Christofides in each cluster.
+    /// The paper's: k-means, Christofides in each cluster, and the fastest entry leg by leg.
     Paper,
-    /// Routes optimised for the objective, never worse than the paper's.
+    /// Routes optimised for the objective, entries chosen for whole routes.
     Optimised,
 }
 

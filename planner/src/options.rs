@@ -11,6 +11,9 @@ pub struct Options<'a> {
     /// Asked between solves; once it returns true, planning ends with [`Error::Stopped`](crate::Error::Stopped).
     /// Default: never stop.
     pub should_stop: Option<&'a (dyn Fn() -> bool + Sync)>,
+    /// Whether every candidate entry is solved, even one that a bound proves worse: to compare, not to plan with. Default:
+    /// false.
+    pub exhaustive: bool,
 }
 
 /// How far planning has come.
@@ -27,6 +30,13 @@ impl<'a> Options<'a> {
     #[must_use]
     pub fn with_progress(mut self, progress: &'a (dyn Fn(Progress) + Sync)) -> Self {
         self.progress = Some(progress);
+        self
+    }
+
+    /// Sets whether every candidate entry is solved.
+    #[must_use]
+    pub fn with_exhaustive(mut self, exhaustive: bool) -> Self {
+        self.exhaustive = exhaustive;
         self
     }
 
@@ -55,6 +65,10 @@ impl<'a> Watch<'a> {
         if let Some(progress) = self.options.progress {
             progress(Progress { done, total: self.total });
         }
+    }
+
+    pub(crate) fn exhaustive(&self) -> bool {
+        self.options.exhaustive
     }
 
     pub(crate) fn should_stop(&self) -> bool {

@@ -4,7 +4,7 @@ use crate::bound::Envelope;
 use crate::circles::{Orbit, orbits};
 use crate::error::{Error, Problem};
 use crate::legs::Airspace;
-use crate::mission::{Mission, Model};
+use crate::mission::{Mission, Model, Pipeline};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
 use crate::separation::{closest_pair, in_the_air, start_delays};
@@ -44,7 +44,10 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     airspace.watch = Watch::new(*options, total);
     let legs = fly_all(&airspace, &pads, &routes)?;
     let found_leg_by_leg: Vec<f64> = legs.iter().map(|legs| legs.last().map_or(0.0, Leg::end_time)).collect();
-    let legs = reconsider_all(&airspace, &pads, &routes, legs)?;
+    let legs = match mission.pipeline {
+        Pipeline::Paper => legs,
+        Pipeline::Optimised => reconsider_all(&airspace, &pads, &routes, legs)?,
+    };
     let vehicles: Vec<VehiclePlan> = pads
         .into_iter()
         .zip(routes)
