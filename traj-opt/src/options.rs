@@ -16,7 +16,8 @@ pub struct Options {
     /// First barrier parameter. Default 0.1 (that of IPOPT).
     pub initial_mu: f64,
     /// How often a solve with free final time that gets stuck far from feasibility is begun again, each time from a guess twice
-    /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. Default 6.
+    /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. If that does not help, guesses
+    /// 16 and 256 times as short as the first and as long as the last follow. Default 6; 0 for a single solve.
     pub time_restarts: usize,
 }
 

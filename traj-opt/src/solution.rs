@@ -3,6 +3,7 @@
 use crate::interpolate::Nodes;
 use crate::{
     Dynamics, Error, IntegrateOptions, Iteration, Mesh, Residuals, Status, Trajectory, Transcription,
+    Violation,
 };
 use nalgebra::SVector;
 
@@ -22,6 +23,10 @@ pub struct Solution<const NX: usize, const NU: usize> {
     pub multipliers: Multipliers<NX>,
     /// One entry an iteration.
     pub log: Vec<Iteration>,
+    /// The constraint that is left most violated, relative to its scale, if the solve did not succeed; `None` if it did or no
+    /// constraint is violated. A dynamically infeasible problem names the equation of motion where the iterate tears, or the end
+    /// condition that it misses.
+    pub diagnosis: Option<Violation>,
     pub(crate) transcription: Transcription,
     pub(crate) mesh: Mesh,
     pub(crate) times: Vec<f64>,

@@ -4,6 +4,7 @@ use crate::interpolate::Nodes;
 use crate::nlp::interior_point::{Memory, Outcome};
 use crate::nlp::program::Program;
 use crate::nlp::{runge_kutta, setup};
+use crate::violation::greatest_residual;
 use crate::{
     Dynamics, Error, Guess, Iteration, Mesh, Multipliers, Options, Problem, Solution, Status, Transcription,
 };
@@ -69,20 +70,34 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let memory = &mut workspace.memory;
     let restarts = if free_time { options.time_restarts } else { 0 };
     let mut spent = 0;
-    let mut attempt = 0;
-    let mut outcome = loop {
-        let length = (guess.final_time() - bounds.initial_time) * f64::powi(2.0, attempt as i32);
-        memory.start(&program, guess, bounds.initial_time + length, options);
-        let outcome = memory.run(&program, options, attempt < restarts, &mut monitor);
-        let again = outcome.status == Status::Infeasible && attempt < restarts;
-        if !again || bounds.initial_time + 2.0 * length > bounds.final_time_upper {
-            break outcome;
+    let possible = bounds.final_time_lower..=bounds.final_time_upper;
+    for factor in restart_factors(restarts) {
+        let final_time = bounds.initial_time + (guess.final_time() - bounds.initial_time) * factor;
+        if factor != 1.0 && !possible.contains(&final_time) {
+            continue;
         }
+        memory.start(&program, guess, final_time, options);
+        let mut outcome = memory.run(&program, options, true, &mut monitor);
         spent += outcome.iterations;
-        attempt += 1;
-    };
+        if outcome.status != Status::Infeasible {
+            outcome.iterations = spent;
+            return Ok(extract(&program, memory, &outcome));
+        }
+    }
+    // what is diagnosed is what the caller's own guess leads to
+    memory.start(&program, guess, guess.final_time(), options);
+    let mut outcome = memory.run(&program, options, false, &mut monitor);
     outcome.iterations += spent;
     Ok(extract(&program, memory, &outcome))
+}
+
+/// Factors of the length of the guess that are tried one after the other while a solve is stuck far from feasibility: doublings,
+/// because a guess is more often too short than too long, then leaps for guesses that are wrong by orders of magnitude.
+fn restart_factors(doublings: usize) -> impl Iterator<Item = f64> {
+    let last = f64::powi(2.0, doublings.min(60) as i32);
+    let leaps = [1.0 / 16.0, 16.0 * last, 1.0 / 256.0, 256.0 * last].into_iter();
+    let first = (0..=doublings.min(60) as i32).map(|k| f64::powi(2.0, k));
+    first.chain(leaps).take(if doublings == 0 { 0 } else { usize::MAX })
 }
 
 /// Builds the solution from the last iterate.
@@ -106,6 +121,7 @@ fn extract<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
             boundary: memory.duals.boundary.clone(),
         },
         log: memory.log.clone(),
+        diagnosis: if outcome.status.is_success() { None } else { greatest_residual(program, memory) },
         transcription: program.transcription,
         mesh: program.mesh.clone(),
         times: program.mesh.fractions().iter().map(|&f| program.time_at(f, tf)).collect(),

@@ -1,5 +1,7 @@
-//! How far a solution leaves its bounds and path constraints between the knots.
+//! Which constraint a trajectory violates, where, and by how much: between the knots, and where a solve failed.
 
+use crate::nlp::interior_point::Memory;
+use crate::nlp::program::Program;
 use crate::{Problem, Solution};
 use nalgebra::SVector;
 
@@ -14,6 +16,25 @@ pub enum ConstraintKind {
     Control,
     /// A path constraint.
     Path,
+    /// The equation of motion of a component of the state, over the segment that ends at the time given.
+    Dynamics,
+    /// A boundary constraint.
+    Boundary,
+    /// A fixed component of the end state.
+    TerminalState,
+}
+
+impl std::fmt::Display for ConstraintKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::State => "bound on state",
+            Self::Control => "bound on control",
+            Self::Path => "path constraint",
+            Self::Dynamics => "equation of motion of state",
+            Self::Boundary => "boundary constraint",
+            Self::TerminalState => "terminal value of state",
+        })
+    }
 }
 
 /// The greatest violation found along a trajectory.
@@ -23,12 +44,58 @@ pub enum ConstraintKind {
 pub struct Violation {
     /// What is violated.
     pub kind: ConstraintKind,
-    /// Component of the state or control, or index of the path constraint.
+    /// Component of the state or control, or index of the path or boundary constraint.
     pub index: usize,
     /// Time, s.
     pub time: f64,
     /// Distance beyond the bound, in the units of the constraint; infinite where its value is not a number.
     pub amount: f64,
+}
+
+impl std::fmt::Display for Violation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {} violated by {:.3e} at time {:.6}", self.kind, self.index, self.amount, self.time)
+    }
+}
+
+/// The residual of the transcribed constraints that is greatest relative to its scale.
+pub(crate) fn greatest_residual<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    program: &Program<NX, NU, P>,
+    memory: &Memory<NX, NU>,
+) -> Option<Violation> {
+    let (layout, values) = (&memory.layout, &memory.values);
+    let tf = memory.w[layout.time];
+    let knots = program.mesh.fractions();
+    let mut worst = (0.0, None);
+    let mut see = |kind, index, fraction, residual: f64, scale: f64| {
+        let amount = if residual.is_nan() { f64::INFINITY } else { residual.abs() };
+        if amount / scale > worst.0 {
+            worst = (
+                amount / scale,
+                Some(Violation { kind, index, time: program.time_at(fraction, tf), amount }),
+            );
+        }
+    };
+    for k in 0..layout.n_segments {
+        let inner = &values.middle[k * layout.n_inner..(k + 1) * layout.n_inner];
+        for defect in inner.iter().chain([&values.defect[k]]) {
+            for i in 0..NX {
+                see(ConstraintKind::Dynamics, i, knots[k + 1], defect[i], memory.states.scale[i]);
+            }
+        }
+    }
+    for (i, residual) in values.path.iter().enumerate() {
+        let (point, row) = (i / layout.n_path, i % layout.n_path);
+        see(ConstraintKind::Path, row, layout.points[point].fraction, *residual, memory.path_scale[row]);
+    }
+    for (i, residual) in values.boundary.iter().enumerate() {
+        let (kind, index) = match memory.rows.fixed.get(i.wrapping_sub(memory.rows.n_functions)) {
+            Some(&component) => (ConstraintKind::TerminalState, component),
+            None => (ConstraintKind::Boundary, i),
+        };
+        see(kind, index, 1.0, *residual, memory.boundary_scale[i]);
+    }
+    worst.1
 }
 
 impl<const NX: usize, const NU: usize> Solution<NX, NU> {
