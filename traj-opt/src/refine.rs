@@ -5,6 +5,7 @@
 //! false optima of a coarse mesh. Segments above the tolerance are divided (bisection as in J. T. Betts, *Practical Methods for
 //! Optimal Control*, section 4.7, with the integration in place of his quadrature of the residual).
 
+use crate::violation::segment_violations;
 use crate::{
     Dynamics, Error, Guess, IntegrateOptions, Iteration, Mesh, Options, Problem, Solution, Transcription,
     Workspace, solve_with,
@@ -18,6 +19,11 @@ use std::ops::ControlFlow;
 pub struct RefineOptions {
     /// Error of a segment, relative to `1 + max |x_i|`, above which it is divided. Default 1e-6.
     pub tolerance: f64,
+    /// How far bounds on states and path constraints may be left between the knots, relative to `1 + |bound|`; segments that
+    /// leave them further are divided. Default 1e-5. A polynomial control overshoots its bounds where it should switch inside a
+    /// segment, however short that is: bounds on controls count with their excess times the segment's share of the flight, which
+    /// is what the state can gain from it.
+    pub violation_tolerance: f64,
     /// Limit of solves after the first. Default 8.
     pub max_rounds: usize,
     /// Limit of segments. Default 2000.
@@ -26,7 +32,7 @@ pub struct RefineOptions {
 
 impl Default for RefineOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-6, max_rounds: 8, max_segments: 2000 }
+        Self { tolerance: 1e-6, violation_tolerance: 1e-5, max_rounds: 8, max_segments: 2000 }
     }
 }
 
@@ -35,6 +41,13 @@ impl RefineOptions {
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
+        self
+    }
+
+    /// Sets [`violation_tolerance`](Self::violation_tolerance); infinite to refine for accuracy alone.
+    #[must_use]
+    pub fn with_violation_tolerance(mut self, tolerance: f64) -> Self {
+        self.violation_tolerance = tolerance;
         self
     }
 
@@ -61,7 +74,9 @@ pub struct Refined<const NX: usize, const NU: usize> {
     pub solution: Solution<NX, NU>,
     /// Its greatest segment error, relative as in [`RefineOptions::tolerance`].
     pub error: f64,
-    /// True if that error is below the tolerance.
+    /// Greatest violation between the knots, as in [`RefineOptions::violation_tolerance`].
+    pub violation: f64,
+    /// True if error and violation are below their tolerances.
     pub converged: bool,
     /// Solves after the first.
     pub rounds: usize,
@@ -118,7 +133,9 @@ pub fn refined_mesh(mesh: &Mesh, errors: &[f64], tolerance: f64, order: usize) -
     Mesh::from_fractions(fractions).unwrap_or_else(|_| mesh.clone())
 }
 
-/// Solves, estimates the error of every segment independently, divides the segments that are not accurate, and repeats.
+/// Solves, estimates the error of every segment independently, divides the segments that are not accurate or leave their
+/// constraints, and repeats. A mesh on which the solve fails, coarse ones have optima that fly away, is halved and begun again
+/// from the guess.
 ///
 /// # Errors
 /// Those of [`solve`](crate::solve) and of the integrator.
@@ -130,28 +147,81 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     options: &Options,
     refine: &RefineOptions,
 ) -> Result<Refined<NX, NU>, Error> {
-    if refine.tolerance.is_nan() || refine.tolerance <= 0.0 {
-        return Err(Error::InvalidOption { option: "tolerance", value: refine.tolerance });
+    for (option, value) in
+        [("tolerance", refine.tolerance), ("violation_tolerance", refine.violation_tolerance)]
+    {
+        if value.is_nan() || value <= 0.0 {
+            return Err(Error::InvalidOption { option, value });
+        }
     }
     let proceed = |_: &Iteration| ControlFlow::Continue(());
     let mut workspace = Workspace::new();
-    let mut solution = solve_with(&mut workspace, problem, mesh, transcription, guess, options, proceed)?;
-    let mut iterations = solution.iterations;
-    for rounds in 0.. {
-        let errors = segment_errors(&solution, problem.dynamics())?;
-        let error = errors.iter().copied().fold(0.0, f64::max);
-        let mesh = refined_mesh(solution.mesh(), &errors, refine.tolerance, transcription.order());
-        let converged = error <= refine.tolerance;
-        if converged || rounds >= refine.max_rounds || mesh.n_segments() > refine.max_segments {
-            return Ok(Refined { solution, error, converged, rounds, iterations });
+    let mut iterations = 0;
+    let mut attempt = |mesh: &Mesh, guess: &Guess<NX, NU>| {
+        let s = solve_with(&mut workspace, problem, mesh, transcription, guess, options, proceed)?;
+        iterations += s.iterations;
+        Ok::<_, Error>(s)
+    };
+    let mut solution = attempt(mesh, guess)?;
+    for _ in 0..MAX_HALVINGS {
+        if solution.status.is_success() || 2 * solution.mesh().n_segments() > refine.max_segments {
+            break;
         }
-        let guess = Guess::from_solution(&solution, 4);
-        let next = solve_with(&mut workspace, problem, &mesh, transcription, &guess, options, proceed)?;
-        iterations += next.iterations;
-        if !next.status.is_success() && solution.status.is_success() {
-            return Ok(Refined { solution, error, converged, rounds, iterations });
-        }
-        solution = next;
+        solution = attempt(&halved(solution.mesh()), guess)?;
     }
-    Err(Error::InvalidOption { option: "max_rounds", value: refine.max_rounds as f64 })
+    let mut rounds = 0;
+    loop {
+        let judged = judge(&solution, problem, refine)?;
+        let mesh = refined_mesh(solution.mesh(), &judged.errors, refine.tolerance, transcription.order());
+        let spent = rounds >= refine.max_rounds || mesh.n_segments() > refine.max_segments;
+        if !judged.converged && !spent && solution.status.is_success() {
+            let mut next = attempt(&mesh, &Guess::from_solution(&solution, 4))?;
+            if !next.status.is_success() {
+                next = attempt(&mesh, guess)?;
+            }
+            if next.status.is_success() {
+                (solution, rounds) = (next, rounds + 1);
+                continue;
+            }
+        }
+        let Judged { error, violation, converged, .. } = judged;
+        return Ok(Refined { solution, error, violation, converged, rounds, iterations });
+    }
+}
+
+/// Halvings of a mesh on which the first solve fails.
+const MAX_HALVINGS: usize = 3;
+/// Points of a segment at which its constraints are looked at.
+const SAMPLES: usize = 8;
+
+/// What is still wrong with a solution.
+struct Judged {
+    /// Errors of the segments, raised where constraints are left so that the segment is divided into three.
+    errors: Vec<f64>,
+    error: f64,
+    violation: f64,
+    converged: bool,
+}
+
+fn judge<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    solution: &Solution<NX, NU>,
+    problem: &P,
+    refine: &RefineOptions,
+) -> Result<Judged, Error> {
+    let order = solution.transcription().order();
+    let mut errors = segment_errors(solution, problem.dynamics())?;
+    let error = errors.iter().copied().fold(0.0, f64::max);
+    let violations = segment_violations(solution, problem, SAMPLES);
+    let violation = violations.iter().copied().fold(0.0, f64::max);
+    for (e, v) in errors.iter_mut().zip(&violations) {
+        if *v > refine.violation_tolerance {
+            *e = e.max(refine.tolerance * f64::powi(3.0, order as i32 + 1));
+        }
+    }
+    let converged = error <= refine.tolerance && violation <= refine.violation_tolerance;
+    Ok(Judged { errors, error, violation, converged })
+}
+
+fn halved(mesh: &Mesh) -> Mesh {
+    refined_mesh(mesh, &vec![f64::MIN_POSITIVE; mesh.n_segments()], 0.9 * f64::MIN_POSITIVE, 1)
 }

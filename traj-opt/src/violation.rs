@@ -122,6 +122,42 @@ impl<const NX: usize, const NU: usize> Solution<NX, NU> {
     }
 }
 
+/// Greatest violation in every segment relative to `1 + |bound|`, that of control bounds times the segment's share of the flight.
+pub(crate) fn segment_violations<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    solution: &Solution<NX, NU>,
+    problem: &P,
+    samples: usize,
+) -> Vec<f64> {
+    let bounds = problem.bounds();
+    let mut path = vec![0.0; problem.n_path()];
+    let limits: Vec<(f64, f64)> = (0..path.len()).map(|i| problem.path_bounds(i)).collect();
+    let beyond = |value: f64, (lower, upper): (f64, f64)| {
+        let below = if lower.is_finite() { (lower - value) / (1.0 + lower.abs()) } else { 0.0 };
+        let above = if upper.is_finite() { (value - upper) / (1.0 + upper.abs()) } else { 0.0 };
+        below.max(above).max(0.0)
+    };
+    let segment = |ends: (usize, &[f64])| {
+        let (k, ends) = ends;
+        let mut worst: f64 = 0.0;
+        let share = (ends[1] - ends[0]) / (solution.final_time() - solution.initial_time());
+        for i in 0..=samples {
+            let time = ends[0] + (ends[1] - ends[0]) * (i as f64 / samples as f64);
+            let (x, u) = (solution.state_at(time), solution.control_in_segment(k, time));
+            for i in 0..NX {
+                worst = worst.max(beyond(x[i], (bounds.state_lower[i], bounds.state_upper[i])));
+            }
+            for i in 0..NU {
+                let excess = beyond(u[i], (bounds.control_lower[i], bounds.control_upper[i]));
+                worst = worst.max(excess * share);
+            }
+            problem.path(time, &x, &u, &mut path);
+            worst = path.iter().zip(&limits).map(|(v, l)| beyond(*v, *l)).fold(worst, f64::max);
+        }
+        worst
+    };
+    solution.times().windows(2).enumerate().map(segment).collect()
+}
+
 /// Replaces `worst` by any greater violation at one point.
 fn worst_at<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     problem: &P,

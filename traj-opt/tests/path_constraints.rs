@@ -2,8 +2,8 @@
 
 use nalgebra::{RealField, SVector};
 use traj_opt::{
-    Bounds, ConstraintKind, Dynamics, Guess, IntegrateOptions, Mesh, Options, Problem, Solution,
-    Transcription, solve,
+    Bounds, ConstraintKind, Dynamics, Guess, IntegrateOptions, Mesh, Options, Problem, RefineOptions,
+    Solution, Transcription, solve, solve_refined,
 };
 
 const SCHEMES: [Transcription; 3] =
@@ -105,4 +105,57 @@ fn greatest_violation_names_constraint_amount_and_time() {
         |samples| solution.greatest_violation(&Detour { radius: 1.0 }, samples).map_or(0.0, |v| v.amount);
     println!("knots {:e}, 16 samples {:e}", own(1), own(16));
     assert!(own(1) < own(16) && own(16) < 0.5);
+}
+
+/// Least time over 4 m with limits on velocity, acceleration and jerk: exactly `d/v + v/a + a/j = 2.6`.
+struct SCurve;
+
+impl Dynamics<3, 1> for SCurve {
+    fn derivative<T: RealField + Copy>(&self, _: T, x: &SVector<T, 3>, u: &SVector<T, 1>) -> SVector<T, 3> {
+        SVector::from([x[1], x[2], u[0]])
+    }
+}
+
+impl Problem<3, 1> for SCurve {
+    type Dynamics = Self;
+
+    fn dynamics(&self) -> &Self {
+        self
+    }
+
+    fn bounds(&self) -> Bounds<3, 1> {
+        Bounds::free()
+            .with_control([-40.0].into(), [40.0].into())
+            .with_state([0.0, -2.0, -4.0].into(), [4.0, 2.0, 4.0].into())
+            .with_initial_state([0.0; 3].into())
+            .with_terminal_state([4.0, 0.0, 0.0].into())
+            .with_final_time(0.01, 100.0)
+    }
+
+    fn mayer<T: RealField + Copy>(&self, _: &SVector<T, 3>, _: &SVector<T, 3>, final_time: T) -> T {
+        final_time
+    }
+}
+
+#[test]
+fn refinement_brings_the_violation_between_the_knots_under_its_tolerance() {
+    let guess = Guess::line([0.0; 3].into(), [4.0, 0.0, 0.0].into(), [0.0].into(), 2.0);
+    let run = |refine: RefineOptions| {
+        let scheme = Transcription::HermiteSimpson;
+        solve_refined(&SCurve, &Mesh::uniform(50), scheme, &guess, &Options::default(), &refine).unwrap()
+    };
+    let states = |r: &traj_opt::Refined<3, 1>| {
+        // independent of the refinement: a fine sample of the interpolated states
+        (0..=20_000)
+            .map(|i| r.solution.state_at(r.solution.final_time() * f64::from(i) / 2e4))
+            .map(|x| (x[1].abs() - 2.0).max(x[2].abs() - 4.0).max(-x[0]).max(x[0] - 4.0))
+            .fold(0.0, f64::max)
+    };
+    let loose = run(RefineOptions::default().with_tolerance(1e-3).with_violation_tolerance(f64::INFINITY));
+    assert!(states(&loose) > 1e-5, "nothing to refine: {}", states(&loose));
+    let tight = run(RefineOptions::default().with_violation_tolerance(1e-6));
+    println!("{} -> {} in {} rounds", states(&loose), states(&tight), tight.rounds);
+    assert!(tight.converged && tight.violation <= 1e-6);
+    assert!(states(&tight) < 1e-5, "{}", states(&tight));
+    assert!((tight.solution.final_time() - 2.6).abs() < 2.6e-6, "{}", tight.solution.final_time());
 }
