@@ -177,6 +177,10 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         if !judged.converged && !spent && solution.status.is_success() {
             let mut next = attempt(&mesh, &Guess::from_solution(&solution, 4))?;
             if !next.status.is_success() {
+                // on from where it got, with a new barrier, or all over again
+                next = attempt(&mesh, &Guess::from_solution(&next, 4))?;
+            }
+            if !next.status.is_success() {
                 next = attempt(&mesh, guess)?;
             }
             if next.status.is_success() {
