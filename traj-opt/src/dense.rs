@@ -11,24 +11,230 @@ pub(crate) trait Kernel {
     type Output;
 
     /// Does the work; `#[inline(always)]`, as must be everything inside that is to profit.
-    fn run(self) -> Self::Output;
+    fn run<A: Arithmetic>(self) -> Self::Output;
 }
 
-struct Dispatched<K>(K);
+/// Runs a kernel compiled for the widest vector instructions that the processor has, with fused multiply-add where the
+/// processor has that. Results are the same to the bit on the same machine, and differ in rounding between machines.
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    struct Wide<K>(K);
+    impl<K: Kernel> pulp::NullaryFnOnce for Wide<K> {
+        type Output = K::Output;
 
-impl<K: Kernel> pulp::WithSimd for Dispatched<K> {
-    type Output = K::Output;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> K::Output {
-        self.0.run()
+        #[inline(always)]
+        fn call(self) -> K::Output {
+            self.0.run::<Fused>()
+        }
+    }
+    match pulp::x86::V3::try_new() {
+        Some(simd) => simd.vectorize(Wide(kernel)),
+        None => kernel.run::<Separate>(),
     }
 }
 
-/// Runs a kernel compiled for the widest vector instructions that the processor has. Products and sums stay separate
-/// operations, so the results are the same to the bit whatever the instructions.
+/// Runs a kernel; this processor always has fused multiply-add and no wider vectors to choose.
+#[cfg(target_arch = "aarch64")]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
-    pulp::Arch::new().dispatch(Dispatched(kernel))
+    kernel.run::<Fused>()
+}
+
+/// Runs a kernel.
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Separate>()
+}
+
+/// Multiplication and addition in one instruction, which only kernels may use: elsewhere it is a slow function call.
+#[derive(Clone, Copy)]
+pub(crate) struct Fused;
+
+/// Multiplication, then addition.
+#[derive(Clone, Copy)]
+pub(crate) struct Separate;
+
+impl Arithmetic for Fused {
+    #[inline(always)]
+    fn madd(a: f64, b: f64, c: f64) -> f64 {
+        a.mul_add(b, c)
+    }
+}
+
+impl Arithmetic for Separate {
+    #[inline(always)]
+    fn madd(a: f64, b: f64, c: f64) -> f64 {
+        a * b + c
+    }
+}
+
+/// Numbers that one instruction of the narrower kind takes.
+pub(crate) const LANES: usize = 4;
+/// A piece of a row whose length is known at run time only.
+pub(crate) type Lanes = [f64; LANES];
+/// Rows of equal length, side by side.
+pub(crate) type Panel<const N: usize> = [Lanes; N];
+
+/// Number of pieces of a row of `n` numbers.
+pub(crate) fn pieces(n: usize) -> usize {
+    n.div_ceil(LANES)
+}
+
+/// Products of small matrices in one way of rounding.
+pub(crate) trait Arithmetic {
+    /// `a b + c`.
+    fn madd(a: f64, b: f64, c: f64) -> f64;
+
+    /// `y += a x`.
+    #[inline(always)]
+    fn axpy<const N: usize>(y: &mut [f64; N], a: f64, x: &[f64; N]) {
+        for i in 0..N {
+            y[i] = Self::madd(a, x[i], y[i]);
+        }
+    }
+
+    /// `x . y`, in four sums.
+    #[inline(always)]
+    fn dot<const N: usize>(x: &[f64; N], y: &[f64; N]) -> f64 {
+        let mut sums = [0.0; LANES];
+        for i in 0..N / LANES {
+            for lane in 0..LANES {
+                let at = i * LANES + lane;
+                sums[lane] = Self::madd(x[at], y[at], sums[lane]);
+            }
+        }
+        for at in N / LANES * LANES..N {
+            sums[at % LANES] = Self::madd(x[at], y[at], sums[at % LANES]);
+        }
+        (sums[0] + sums[2]) + (sums[1] + sums[3])
+    }
+
+    /// `a b`.
+    #[inline(always)]
+    fn mul<const R: usize, const K: usize, const C: usize>(
+        a: &Matrix<R, K>,
+        b: &Matrix<K, C>,
+    ) -> Matrix<R, C> {
+        let mut out = Matrix::<R, C>::zeros();
+        for j in 0..C {
+            let mut column = [0.0; R];
+            for k in 0..K {
+                Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
+            }
+            out.data.0[j] = column;
+        }
+        out
+    }
+
+    /// `a b` for an `a` of which some columns are zero: derivatives of a model by variables that it does not depend on.
+    #[inline(always)]
+    fn mul_thin<const R: usize, const K: usize, const C: usize>(
+        a: &Matrix<R, K>,
+        b: &Matrix<K, C>,
+    ) -> Matrix<R, C> {
+        let mut used = [0; K];
+        let mut n_used = 0;
+        for k in 0..K {
+            if a.data.0[k].iter().any(|&v| v != 0.0) {
+                used[n_used] = k;
+                n_used += 1;
+            }
+        }
+        let mut out = Matrix::<R, C>::zeros();
+        for j in 0..C {
+            let mut column = [0.0; R];
+            for &k in &used[..n_used] {
+                Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
+            }
+            out.data.0[j] = column;
+        }
+        out
+    }
+
+    /// `a x`.
+    #[inline(always)]
+    fn mul_vec<const R: usize, const K: usize>(a: &Matrix<R, K>, x: &SVector<f64, K>) -> SVector<f64, R> {
+        let mut out = [0.0; R];
+        for k in 0..K {
+            Self::axpy(&mut out, x[k], &a.data.0[k]);
+        }
+        SVector::from(out)
+    }
+
+    /// `a' x`.
+    #[inline(always)]
+    fn tr_mul_vec<const R: usize, const K: usize>(a: &Matrix<K, R>, x: &SVector<f64, K>) -> SVector<f64, R> {
+        // no closure: one handed to a function that is not inlined would be compiled without the wide instructions
+        let mut out = [0.0; R];
+        for i in 0..R {
+            out[i] = Self::dot(&a.data.0[i], array(x));
+        }
+        SVector::from(out)
+    }
+
+    /// `start` plus the sum over k of `x[k] rows[k]`.
+    #[inline(always)]
+    fn combine<const N: usize>(start: Lanes, x: &[f64; N], rows: &[Lanes; N]) -> Lanes {
+        let mut sum = start;
+        for k in 0..N {
+            Self::axpy(&mut sum, x[k], &rows[k]);
+        }
+        sum
+    }
+
+    /// `start` minus the sum over j of `x[j] rows[j]`.
+    #[inline(always)]
+    fn subtract(start: Lanes, x: impl IntoIterator<Item = f64>, rows: &[Lanes]) -> Lanes {
+        let mut sum = start;
+        for (x, row) in x.into_iter().zip(rows) {
+            Self::axpy(&mut sum, -x, row);
+        }
+        sum
+    }
+
+    /// Inverse by Gauss-Jordan elimination with pivots chosen in rows; `None` if a pivot is zero.
+    #[inline(always)]
+    fn inverse<const N: usize>(a: &Matrix<N, N>) -> Option<Matrix<N, N>> {
+        let mut c = a.data.0;
+        let mut order = [0; N];
+        for (i, place) in order.iter_mut().enumerate() {
+            *place = i;
+        }
+        for k in 0..N {
+            let mut best = k;
+            for j in k + 1..N {
+                if c[j][k].abs() > c[best][k].abs() {
+                    best = j;
+                }
+            }
+            if c[best][k].is_nan() || c[best][k] == 0.0 {
+                return None;
+            }
+            c.swap(k, best);
+            order.swap(k, best);
+            let pivot = 1.0 / c[k][k];
+            let own = c[k];
+            for j in 0..N {
+                let share = c[j][k] * pivot;
+                let mut column = [0.0; N];
+                for i in 0..N {
+                    let reduced = Self::madd(-share, own[i], c[j][i]);
+                    column[i] = if i == k { share } else { reduced };
+                }
+                c[j] = column;
+            }
+            for i in 0..N {
+                c[k][i] = if i == k { pivot } else { -own[i] * pivot };
+            }
+        }
+        // rows of the inverse belong to the columns as they were before the exchanges
+        let mut out = Matrix::<N, N>::zeros();
+        for j in 0..N {
+            for i in 0..N {
+                out.data.0[j][order[i]] = c[j][i];
+            }
+        }
+        Some(out)
+    }
 }
 
 type Matrix<const R: usize, const C: usize> = SMatrix<f64, R, C>;

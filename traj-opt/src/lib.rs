@@ -17,6 +17,7 @@
 //! | state a problem | [`Dynamics`], [`Problem`], [`Bounds`] |
 //! | choose a discretisation | [`Mesh`], [`Transcription`] |
 //! | solve it | [`solve`], [`solve_with`], [`Guess`], [`Options`] |
+//! | solve a neighbour of a solved problem | [`solve_from`] |
 //! | use the result | [`Solution`], [`Status`] |
 //! | check it independently | [`Solution::integrate`], [`integrate`], [`segment_errors`], [`check_derivatives`] |
 //! | see what it leaves between the knots | [`Solution::greatest_violation`] |
@@ -118,7 +119,7 @@ pub use options::Options;
 pub use problem::{Problem, Scales};
 pub use refine::{RefineOptions, Refined, refined_mesh, segment_errors, solve_refined};
 pub use solution::{Multipliers, Solution};
-pub use solve::{Workspace, solve, solve_with};
+pub use solve::{Workspace, solve, solve_from, solve_with};
 pub use status::{Iteration, Residuals, Status};
 pub use transcription::Transcription;
 pub use violation::{ConstraintKind, Violation};

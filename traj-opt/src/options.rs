@@ -15,6 +15,9 @@ pub struct Options {
     pub max_iterations: usize,
     /// First barrier parameter. Default 0.1 (that of IPOPT).
     pub initial_mu: f64,
+    /// First barrier parameter of a solve that starts from a neighbour's solution ([`solve_from`](crate::solve_from)), relative
+    /// to the scale of the cost. Default 3e-6.
+    pub warm_mu: f64,
     /// How often a solve with free final time that gets stuck far from feasibility is begun again, each time from a guess twice
     /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. If that does not help, guesses
     /// 16 and 256 times as short as the first and as long as the last follow. Default 6; 0 for a single solve.
@@ -28,6 +31,7 @@ impl Default for Options {
             acceptable_tolerance: 1e-6,
             max_iterations: 300,
             initial_mu: 0.1,
+            warm_mu: 3e-6,
             time_restarts: 6,
         }
     }
@@ -62,6 +66,13 @@ impl Options {
         self
     }
 
+    /// Sets [`warm_mu`](Self::warm_mu).
+    #[must_use]
+    pub fn with_warm_mu(mut self, mu: f64) -> Self {
+        self.warm_mu = mu;
+        self
+    }
+
     /// Sets [`time_restarts`](Self::time_restarts).
     #[must_use]
     pub fn with_time_restarts(mut self, n: usize) -> Self {
@@ -74,6 +85,7 @@ impl Options {
             ("tolerance", self.tolerance),
             ("acceptable_tolerance", self.acceptable_tolerance),
             ("initial_mu", self.initial_mu),
+            ("warm_mu", self.warm_mu),
         ];
         for (option, value) in positive {
             if !(value > 0.0 && value.is_finite()) {

@@ -10,7 +10,7 @@ use super::layout::Layout;
 use super::program::{Duals, Linearisation, Program, Values, add_control_block};
 use super::running::{self, PointModel, PointTerms};
 use super::trapezoidal::add_end;
-use crate::dense::{mul, mul_thin, mul_vec, vector};
+use crate::dense::{Arithmetic, vector};
 use crate::{Dynamics, Problem};
 use nalgebra::{SMatrix, SVector};
 
@@ -68,7 +68,7 @@ pub(crate) fn evaluate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 
 /// Derivatives of segment `k`.
 #[inline(always)]
-pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+pub(crate) fn linearise<A: Arithmetic, const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     program: &Program<NX, NU, P>,
     layout: &Layout,
     k: usize,
@@ -97,7 +97,7 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
             add_end(&mut out.raw, layout.m, k, i / 2, i, &terms);
         }
     }
-    eliminate(layout, k, &at, &model, out);
+    eliminate::<A, NX, NU>(layout, k, &at, &model, out);
 }
 
 #[inline(always)]
@@ -120,7 +120,7 @@ fn add_middle<const NX: usize, const NU: usize>(
 
 /// Resolves the linearised defects for the middle and end states.
 #[inline(always)]
-fn eliminate<const NX: usize, const NU: usize>(
+fn eliminate<A: Arithmetic, const NX: usize, const NU: usize>(
     layout: &Layout,
     k: usize,
     at: &[running::PointTime; 3],
@@ -132,30 +132,30 @@ fn eliminate<const NX: usize, const NU: usize>(
     let by_first = one * 0.5 + model[0].f.state * (h * HERMITE[0]);
     let by_next = one * 0.5 + model[2].f.state * (h * HERMITE[2]);
     let defect_by = model[1].f.state * (h * WEIGHT[1]);
-    let implicit = one - model[2].f.state * (h * WEIGHT[2]) - mul_thin(&defect_by, &by_next);
-    let resolve = implicit.try_inverse().unwrap_or_else(SMatrix::identity);
-    let explicit = one + model[0].f.state * (h * WEIGHT[0]) + mul_thin(&defect_by, &by_first);
-    let a = mul(&resolve, &explicit);
+    let implicit = one - model[2].f.state * (h * WEIGHT[2]) - A::mul_thin(&defect_by, &by_next);
+    let resolve = A::inverse(&implicit).unwrap_or_else(SMatrix::identity);
+    let explicit = one + model[0].f.state * (h * WEIGHT[0]) + A::mul_thin(&defect_by, &by_first);
+    let a = A::mul(&resolve, &explicit);
     let (mut defect_p, mut middle_p) = (SVector::zeros(), SVector::zeros());
     for i in 0..3 {
         let rate = model[i].f.value * h_rate + model[i].f.time * (h * at[i].t_rate);
         defect_p += rate * WEIGHT[i];
         middle_p += rate * HERMITE[i];
     }
-    let ap = mul_vec(&resolve, &(defect_p + mul_vec(&defect_by, &middle_p)));
+    let ap = A::mul_vec(&resolve, &(defect_p + A::mul_vec(&defect_by, &middle_p)));
     for i in 0..3 {
         let g = &model[i].f.control;
         let direct = g * (h * HERMITE[i]);
-        let b = mul(&resolve, &(g * (h * WEIGHT[i]) + mul_thin(&defect_by, &direct)));
-        let su = direct + mul(&by_next, &b);
+        let b = A::mul(&resolve, &(g * (h * WEIGHT[i]) + A::mul_thin(&defect_by, &direct)));
+        let su = direct + A::mul(&by_next, &b);
         for j in 0..NU {
             out.raw.b[k * layout.m + i * NU + j] = b.column(j).into_owned();
             out.middle_su[k * layout.m + i * NU + j] = su.column(j).into_owned();
         }
     }
     let middle = &mut out.middles[k];
-    middle.sx = by_first + mul(&by_next, &a);
-    middle.sp = middle_p + mul_vec(&by_next, &ap);
+    middle.sx = by_first + A::mul(&by_next, &a);
+    middle.sp = middle_p + A::mul_vec(&by_next, &ap);
     (middle.by_next, middle.defect_by) = (by_next, defect_by);
     (out.raw.a[k], out.raw.ap[k], out.resolve[k]) = (a, ap, resolve);
 }

@@ -5,8 +5,8 @@ use super::boundary::BoundaryRows;
 use super::layout::{Layout, Place};
 use super::program::{Duals, Linearisation, Values};
 use super::quadratic::{Quadratic, Rhs, Step};
-use crate::dense::Kernel;
-use crate::dense::{axpy, dispatch, mul_thin, mul_vec, rank_one, tr_mul, tr_mul_vec, vector};
+use crate::dense::{Arithmetic, Kernel, LANES, array};
+use crate::dense::{axpy, dispatch, rank_one, vector};
 use nalgebra::{SMatrix, SVector};
 
 /// Newton direction of all variables and multipliers.
@@ -33,7 +33,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     }
 
     #[inline(always)]
-    fn assemble_here(&self, lq: &mut Quadratic<NX>) {
+    fn assemble_here<A: Arithmetic>(&self, lq: &mut Quadratic<NX>) {
         let layout = self.layout;
         for knot in 0..=layout.n_segments {
             for i in 0..NX {
@@ -53,7 +53,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
             }
         }
         self.add_path(lq);
-        self.add_middles(lq);
+        self.add_middles::<A>(lq);
         if self.lin.stages.is_used() {
             self.add_stages(lq);
         }
@@ -118,62 +118,88 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
 
     /// Maps the second derivatives at the middle states to the segments' other variables.
     #[inline(always)]
-    fn add_middles(&self, lq: &mut Quadratic<NX>) {
+    fn add_middles<A: Arithmetic>(&self, lq: &mut Quadratic<NX>) {
         let m = self.layout.m;
         for (k, middle) in self.lin.middles.iter().enumerate() {
             let (hxx, hxu, hxp) = self.middle_hessian(k);
             let su = &self.lin.middle_su[k * m..(k + 1) * m];
-            let hx = mul_thin(&hxx, &middle.sx);
-            lq.q[k] += tr_mul(&middle.sx, &hx);
-            let hp = mul_vec(&hxx, &middle.sp) + hxp;
-            lq.qp[k] += tr_mul_vec(&middle.sx, &hp);
+            let st = middle.sx.transpose();
+            let hx = A::mul_thin(&hxx, &middle.sx);
+            lq.q[k] += A::mul(&st, &hx);
+            let hp = A::mul_vec(&hxx, &middle.sp) + hxp;
+            lq.qp[k] += A::mul_vec(&st, &hp);
             lq.hpp += middle.sp.dot(&(hp + hxp));
-            for j in 0..m {
-                let mut column = mul_vec(&hxx, &su[j]);
-                lq.rp[k * m + j] += su[j].dot(&hp);
-                if (NU..2 * NU).contains(&j) {
-                    column += hxu.column(j - NU);
-                    lq.rp[k * m + j] += hxu.column(j - NU).dot(&middle.sp);
-                }
-                lq.s[k * m + j] += tr_mul_vec(&middle.sx, &column);
-                for i in 0..m {
-                    let mut value = su[i].dot(&column);
-                    if (NU..2 * NU).contains(&i) {
-                        value += hxu.column(i - NU).dot(&su[j]);
+            let panels = &mut lq.panels;
+            for (columns, panel) in su.chunks(LANES).zip(panels.iter_mut()) {
+                for (lane, column) in columns.iter().enumerate() {
+                    for i in 0..NX {
+                        panel[i][lane] = column[i];
                     }
-                    lq.r[(k * m + i) * m + j] += value;
+                }
+            }
+            for j in 0..m {
+                let mut column = A::mul_vec(&hxx, &su[j]);
+                lq.rp[k * m + j] += A::dot(array(&su[j]), array(&hp));
+                if (NU..2 * NU).contains(&j) {
+                    let own = hxu.column(j - NU).into_owned();
+                    column += own;
+                    lq.rp[k * m + j] += A::dot(array(&own), array(&middle.sp));
+                }
+                lq.s[k * m + j] += A::mul_vec(&st, &column);
+                let r = &mut lq.r[(k * m + j) * m..(k * m + j + 1) * m];
+                for (r, panel) in r.chunks_mut(LANES).zip(panels.iter()) {
+                    let sums = A::combine([0.0; LANES], array(&column), panel);
+                    for (r, sum) in r.iter_mut().zip(sums) {
+                        *r += sum;
+                    }
+                }
+            }
+            // the columns of the middle control
+            for i in 0..NU {
+                let own = hxu.column(i).into_owned();
+                for j in 0..m {
+                    lq.r[(k * m + j) * m + NU + i] += A::dot(array(&own), array(&su[j]));
                 }
             }
         }
     }
 
     /// Gradient of the barrier Lagrangian with respect to variable `i`.
+    #[inline(always)]
     pub(super) fn gradient(&self, i: usize) -> f64 {
         self.lin.lagrangian[i] + self.bounds.gradient(self.w, i, self.mu)
     }
 
     /// Middle state's direction with all other variables held, and the end state's residual.
-    fn offsets(&self, values: &Values<NX>, k: usize) -> (SVector<f64, NX>, SVector<f64, NX>) {
+    #[inline(always)]
+    fn offsets<A: Arithmetic>(&self, values: &Values<NX>, k: usize) -> (SVector<f64, NX>, SVector<f64, NX>) {
         if self.layout.has_middle {
             let middle = &self.lin.middles[k];
-            let c = mul_vec(
+            let c = A::mul_vec(
                 &self.lin.resolve[k],
-                &(values.defect[k] + mul_vec(&middle.defect_by, &values.middle[k])),
+                &(values.defect[k] + A::mul_vec(&middle.defect_by, &values.middle[k])),
             );
-            (values.middle[k] + mul_vec(&middle.by_next, &c), c)
+            (values.middle[k] + A::mul_vec(&middle.by_next, &c), c)
         } else if self.lin.resolve.is_empty() {
             (SVector::zeros(), values.defect[k])
         } else {
-            (SVector::zeros(), mul_vec(&self.lin.resolve[k], &values.defect[k]))
+            (SVector::zeros(), A::mul_vec(&self.lin.resolve[k], &values.defect[k]))
         }
     }
 
     /// Right-hand side for the given constraint residuals.
     pub fn right_hand_side(&self, values: &Values<NX>, rhs: &mut Rhs<NX>) {
+        dispatch(Gather { system: self, values, rhs });
+    }
+
+    #[inline(always)]
+    fn right_hand_side_here<A: Arithmetic>(&self, values: &Values<NX>, rhs: &mut Rhs<NX>) {
         let layout = self.layout;
         let m = layout.m;
         for knot in 0..=layout.n_segments {
-            rhs.gx[knot] = SVector::from_fn(|i, _| self.gradient(layout.state(knot) + i));
+            for i in 0..NX {
+                rhs.gx[knot][i] = self.gradient(layout.state(knot) + i);
+            }
         }
         for i in 0..layout.n_segments * m {
             rhs.gu[i] = self.gradient(layout.controls + i);
@@ -207,24 +233,29 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
                 self.add_stage_gradients(values, k, rhs);
                 continue;
             }
-            let (offset, c) = self.offsets(values, k);
+            let (offset, c) = self.offsets::<A>(values, k);
             rhs.c[k] = c;
             if layout.has_middle {
-                self.add_middle_gradient(values, k, &offset, rhs);
+                self.add_middle_gradient::<A>(values, k, &offset, rhs);
             }
         }
     }
 
     /// Change of a path multiplier when its point does not move.
+    #[inline(always)]
     pub(super) fn slack_force(&self, values: &Values<NX>, row: usize) -> f64 {
         let index = self.layout.path_slacks + row;
         self.bounds.sigma(self.w, index) * values.path[row] + self.gradient(index)
     }
 
     /// Gradient with respect to the middle state, including path constraints there.
+    #[inline(always)]
     fn middle_gradient(&self, values: &Values<NX>, k: usize) -> SVector<f64, NX> {
         let layout = self.layout;
-        let mut g = SVector::from_fn(|i, _| self.gradient(layout.middle(k) + i));
+        let mut g = SVector::zeros();
+        for i in 0..NX {
+            g[i] = self.gradient(layout.middle(k) + i);
+        }
         let n = layout.n_path;
         for row in (3 * k + 1) * n..(3 * k + 2) * n {
             g += self.lin.path_x[row] * self.slack_force(values, row);
@@ -232,7 +263,8 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         g
     }
 
-    fn add_middle_gradient(
+    #[inline(always)]
+    fn add_middle_gradient<A: Arithmetic>(
         &self,
         values: &Values<NX>,
         k: usize,
@@ -242,8 +274,8 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         let m = self.layout.m;
         let middle = &self.lin.middles[k];
         let (hxx, hxu, hxp) = self.middle_hessian(k);
-        let g = self.middle_gradient(values, k) + mul_vec(&hxx, offset);
-        rhs.gx[k] += tr_mul_vec(&middle.sx, &g);
+        let g = self.middle_gradient(values, k) + A::mul_vec(&hxx, offset);
+        rhs.gx[k] += A::tr_mul_vec(&middle.sx, &g);
         rhs.gp += middle.sp.dot(&g) + hxp.dot(offset);
         for j in 0..m {
             rhs.gu[k * m + j] += self.lin.middle_su[k * m + j].dot(&g);
@@ -255,6 +287,11 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
 
     /// Expands a solution of the subproblem to all variables and multipliers.
     pub fn expand(&self, values: &Values<NX>, step: &Step<NX>, out: &mut Direction<NX>) {
+        dispatch(Expand { system: self, values, step, out });
+    }
+
+    #[inline(always)]
+    fn expand_here<A: Arithmetic>(&self, values: &Values<NX>, step: &Step<NX>, out: &mut Direction<NX>) {
         let layout = self.layout;
         for knot in 0..=layout.n_segments {
             out.w[layout.state(knot)..layout.state(knot + 1)].copy_from_slice(step.dx[knot].as_slice());
@@ -269,7 +306,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
             }
         }
         for k in 0..layout.n_segments {
-            self.expand_segment(values, step, k, out);
+            self.expand_segment::<A>(values, step, k, out);
         }
         let n = layout.n_path;
         for (i, point) in layout.points.iter().enumerate() {
@@ -288,7 +325,14 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     }
 
     /// Middle state and defect multipliers of one segment.
-    fn expand_segment(&self, values: &Values<NX>, step: &Step<NX>, k: usize, out: &mut Direction<NX>) {
+    #[inline(always)]
+    fn expand_segment<A: Arithmetic>(
+        &self,
+        values: &Values<NX>,
+        step: &Step<NX>,
+        k: usize,
+        out: &mut Direction<NX>,
+    ) {
         let layout = self.layout;
         if self.lin.stages.is_used() {
             self.expand_stages(values, step, k, out);
@@ -297,23 +341,24 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         let mut costate = step.costate[k];
         if !layout.has_middle {
             out.duals.defect[k] =
-                self.lin.resolve.get(k).map_or(costate, |resolve| tr_mul_vec(resolve, &costate));
+                self.lin.resolve.get(k).map_or(costate, |resolve| A::tr_mul_vec(resolve, &costate));
             return;
         }
         let m = layout.m;
         let middle = &self.lin.middles[k];
-        let (offset, _) = self.offsets(values, k);
-        let mut dm = offset + mul_vec(&middle.sx, &step.dx[k]) + middle.sp * step.dp;
+        let (offset, _) = self.offsets::<A>(values, k);
+        let mut dm = offset + A::mul_vec(&middle.sx, &step.dx[k]) + middle.sp * step.dp;
         for j in 0..m {
             dm += self.lin.middle_su[k * m + j] * step.du[k * m + j];
         }
         out.w[layout.middle(k)..layout.middle(k) + NX].copy_from_slice(dm.as_slice());
         let (hxx, hxu, hxp) = self.middle_hessian(k);
         let du: SVector<f64, NU> = vector(&step.du, k * m + NU);
-        let force = self.middle_gradient(values, k) + mul_vec(&hxx, &dm) + mul_vec(&hxu, &du) + hxp * step.dp;
-        costate += tr_mul_vec(&middle.by_next, &force);
-        let defect = tr_mul_vec(&self.lin.resolve[k], &costate);
-        out.duals.middle[k] = force + tr_mul_vec(&middle.defect_by, &defect);
+        let force =
+            self.middle_gradient(values, k) + A::mul_vec(&hxx, &dm) + A::mul_vec(&hxu, &du) + hxp * step.dp;
+        costate += A::tr_mul_vec(&middle.by_next, &force);
+        let defect = A::tr_mul_vec(&self.lin.resolve[k], &costate);
+        out.duals.middle[k] = force + A::tr_mul_vec(&middle.defect_by, &defect);
         out.duals.defect[k] = defect;
     }
 }
@@ -327,7 +372,38 @@ impl<const NX: usize, const NU: usize> Kernel for Assemble<'_, '_, NX, NU> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
-        self.system.assemble_here(self.lq);
+    fn run<A: Arithmetic>(self) {
+        self.system.assemble_here::<A>(self.lq);
+    }
+}
+
+struct Gather<'a, 'b, const NX: usize, const NU: usize> {
+    system: &'a System<'b, NX, NU>,
+    values: &'a Values<NX>,
+    rhs: &'a mut Rhs<NX>,
+}
+
+impl<const NX: usize, const NU: usize> Kernel for Gather<'_, '_, NX, NU> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.system.right_hand_side_here::<A>(self.values, self.rhs);
+    }
+}
+
+struct Expand<'a, 'b, const NX: usize, const NU: usize> {
+    system: &'a System<'b, NX, NU>,
+    values: &'a Values<NX>,
+    step: &'a Step<NX>,
+    out: &'a mut Direction<NX>,
+}
+
+impl<const NX: usize, const NU: usize> Kernel for Expand<'_, '_, NX, NU> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.system.expand_here::<A>(self.values, self.step, self.out);
     }
 }

@@ -24,3 +24,4 @@ pub(crate) mod setup;
 pub(crate) mod stages;
 pub(crate) mod tableau;
 pub(crate) mod trapezoidal;
+pub(crate) mod warm;

@@ -6,7 +6,7 @@ use super::quadratic::Quadratic;
 use super::running::{PointTerms, PointTime};
 use super::stages::Stages;
 use super::{boundary, hermite_simpson, path, radau, runge_kutta, trapezoidal};
-use crate::dense::{Kernel, dispatch, vector};
+use crate::dense::{Arithmetic, Kernel, dispatch, vector};
 use crate::{Bounds, Mesh, Problem, Scales, Transcription};
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual2SVec64, Dual64, DualSVec64, HyperDual64, HyperDualSVec64};
@@ -270,7 +270,7 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
     }
 
     #[inline(always)]
-    fn linearise_segments(
+    fn linearise_segments<A: Arithmetic>(
         &self,
         layout: &Layout,
         w: &[f64],
@@ -286,7 +286,7 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
                 }
                 Transcription::Trapezoidal => trapezoidal::linearise(self, layout, k, w, duals, second, out),
                 Transcription::HermiteSimpson | Transcription::CompressedHermiteSimpson => {
-                    hermite_simpson::linearise(self, layout, k, w, duals, second, out);
+                    hermite_simpson::linearise::<A, NX, NU, P>(self, layout, k, w, duals, second, out);
                 }
                 Transcription::LegendreGaussRadau { .. } => {
                     radau::linearise(self, layout, k, w, duals, second, out);
@@ -320,8 +320,15 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Kernel for Segments<'
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
-        self.program.linearise_segments(self.layout, self.w, self.duals, self.second, self.scratch, self.out);
+    fn run<A: Arithmetic>(self) {
+        self.program.linearise_segments::<A>(
+            self.layout,
+            self.w,
+            self.duals,
+            self.second,
+            self.scratch,
+            self.out,
+        );
     }
 }
 

@@ -1,5 +1,6 @@
 //! The linear-quadratic subproblem of a Newton step, stage by stage.
 
+use crate::dense::{LANES, Panel, pieces};
 use nalgebra::{SMatrix, SVector};
 
 /// Matrices of the subproblem. With `dx` the knot states, `du` the `m` controls of a segment and `dp` the final time:
@@ -31,6 +32,8 @@ pub(crate) struct Quadratic<const NX: usize> {
     pub et: Vec<f64>,
     /// Inverse barrier curvature of each boundary slack; 0 for an equality.
     pub compliance: Vec<f64>,
+    /// Scratch: the columns of one segment, transposed.
+    pub panels: Vec<Panel<NX>>,
 }
 
 impl<const NX: usize> Quadratic<NX> {
@@ -48,6 +51,7 @@ impl<const NX: usize> Quadratic<NX> {
         self.ef.resize(n_boundary, SVector::zeros());
         self.et.resize(n_boundary, 0.0);
         self.compliance.resize(n_boundary, 0.0);
+        self.panels.resize(pieces(m), [[0.0; LANES]; NX]);
     }
 
     /// Sets all second derivatives to zero.

@@ -426,6 +426,7 @@ pub struct Reference {
     pub end: Vector<13>,
     pub time_thrust_rate: f64,
     pub time_rigid_body: f64,
+    pub centre: Vector<3>,
 }
 
 pub fn references() -> Vec<Reference> {
@@ -447,6 +448,9 @@ pub fn references() -> Vec<Reference> {
                 start: state(&fields, "start"),
                 end: state(&fields, "end"),
                 time_thrust_rate: fields[column("tfA_hs80")].parse().expect("number"),
+                centre: Vector::<3>::from_fn(|i, _| {
+                    fields[column(["c1x", "c1y", "c1z"][i])].parse().expect("number")
+                }),
                 time_rigid_body: fields[column("tfB_hs80")].parse().expect("number"),
             }
         })

@@ -1,0 +1,145 @@
+//! The recursion with vectors: backwards with the right-hand side, forwards with the step.
+
+use super::triangular::{backward_scaled, forward_scaled};
+use super::{Riccati, penalty};
+use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch};
+use crate::nlp::quadratic::{Quadratic, Rhs, Step};
+use nalgebra::SVector;
+
+struct Solve<'a, const NX: usize> {
+    riccati: &'a mut Riccati<NX>,
+    lq: &'a Quadratic<NX>,
+    state_weight: &'a SVector<f64, NX>,
+    rhs: &'a Rhs<NX>,
+    step: &'a mut Step<NX>,
+}
+
+impl<const NX: usize> Kernel for Solve<'_, NX> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.riccati.backward::<A>(self.lq, self.state_weight, self.rhs);
+        self.riccati.solve_border(self.step);
+        self.riccati.solve_start(self.step);
+        self.riccati.forward::<A>(self.lq, self.rhs, self.step);
+    }
+}
+
+impl<const NX: usize> Riccati<NX> {
+    /// Solves for one right-hand side.
+    pub fn solve(
+        &mut self,
+        lq: &Quadratic<NX>,
+        state_weight: &SVector<f64, NX>,
+        rhs: &Rhs<NX>,
+        step: &mut Step<NX>,
+    ) {
+        dispatch(Solve { riccati: self, lq, state_weight, rhs, step });
+    }
+
+    #[inline(always)]
+    fn backward<A: Arithmetic>(
+        &mut self,
+        lq: &Quadratic<NX>,
+        state_weight: &SVector<f64, NX>,
+        rhs: &Rhs<NX>,
+    ) {
+        let (n, m, nb) = (self.n, self.m, self.n_border);
+        let (mc, nc) = (self.control_pieces, self.border_pieces);
+        let mut linear = rhs.gx[n];
+        self.border_rhs.fill([0.0; LANES]);
+        self.border_rhs[0][0] = rhs.gp;
+        for j in 1..nb {
+            let rho = penalty(self.rho, lq, state_weight, j - 1);
+            linear += lq.ef[j - 1] * (rho * rhs.e[j - 1]);
+            self.border_rhs[0][0] += rho * lq.et[j - 1] * rhs.e[j - 1];
+            self.border_rhs[j / LANES][j % LANES] = rhs.e[j - 1];
+        }
+        self.linear[n] = linear;
+        for k in (0..n).rev() {
+            let c = array(&rhs.c[k]);
+            let v = A::mul_vec(&self.value[k + 1], &rhs.c[k]) + self.linear[k + 1];
+            let columns = &self.columns[(k + 1) * nc..(k + 2) * nc];
+            for (sum, panel) in self.border_rhs.iter_mut().zip(columns) {
+                *sum = A::combine(*sum, c, panel);
+            }
+            self.border_rhs[0][0] += A::dot(array(&v), array(&lq.ap[k]));
+            let row = &mut self.linear_gain[k * m..(k + 1) * m];
+            let panels = &self.control_rows[k * mc..(k + 1) * mc];
+            for ((out, gradient), panel) in
+                row.chunks_mut(LANES).zip(rhs.gu[k * m..(k + 1) * m].chunks(LANES)).zip(panels)
+            {
+                let product = A::combine([0.0; LANES], array(&v), panel);
+                for ((out, gradient), product) in out.iter_mut().zip(gradient).zip(product) {
+                    *out = gradient + product;
+                }
+            }
+            for i in self.first_cross[k]..m {
+                row[i] += A::dot(array(&lq.cross[k * m + i]), c);
+            }
+            let factor = &self.factor[k * m * m..(k + 1) * m * m];
+            forward_scaled::<A>(factor, &self.inverse_pivot[k * m..(k + 1) * m], row);
+            let mut own = *array(&rhs.gx[k]);
+            for l in 0..NX {
+                A::axpy(&mut own, v[l], &self.transposed[k].data.0[l]);
+            }
+            for (value, gain) in row.iter().zip(&self.gain[k * m..(k + 1) * m]) {
+                A::axpy(&mut own, -value, array(gain));
+            }
+            *array_mut(&mut self.linear[k]) = own;
+            let gains = self.border_gain[k * m * nc..(k + 1) * m * nc].chunks_exact(m.max(1));
+            for (sum, rows) in self.border_rhs.iter_mut().zip(gains) {
+                *sum = A::subtract(*sum, row.iter().copied(), rows);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn forward<A: Arithmetic>(&mut self, lq: &Quadratic<NX>, rhs: &Rhs<NX>, step: &mut Step<NX>) {
+        let (n, m, nc) = (self.n, self.m, self.border_pieces);
+        self.weights.fill([0.0; LANES]);
+        self.weights[0][0] = if self.free_time { step.dp } else { 0.0 };
+        for (j, weight) in step.boundary.iter().enumerate() {
+            self.weights[(j + 1) / LANES][(j + 1) % LANES] = *weight;
+        }
+        for k in 0..n {
+            let dx = step.dx[k];
+            let du = &mut step.du[k * m..(k + 1) * m];
+            for i in 0..m {
+                let mut sums = [0.0; LANES];
+                for (piece, weights) in self.weights.iter().enumerate() {
+                    let gain = &self.border_gain[(k * nc + piece) * m + i];
+                    for lane in 0..LANES {
+                        sums[lane] = A::madd(gain[lane], weights[lane], sums[lane]);
+                    }
+                }
+                let border = (sums[0] + sums[2]) + (sums[1] + sums[3]);
+                let own = A::dot(array(&self.gain[k * m + i]), array(&dx));
+                du[i] = -(self.linear_gain[k * m + i] + own + border);
+            }
+            let factor = &self.factor[k * m * m..(k + 1) * m * m];
+            backward_scaled::<A>(factor, &self.inverse_pivot[k * m..(k + 1) * m], du);
+            let mut next = A::mul_vec(&lq.a[k], &dx) + rhs.c[k] + lq.ap[k] * step.dp;
+            for (du, b) in du.iter().zip(&lq.b[k * m..(k + 1) * m]) {
+                A::axpy(array_mut(&mut next), *du, array(b));
+            }
+            let mut costate = self.linear[k + 1];
+            for i in self.first_cross[k]..m {
+                A::axpy(array_mut(&mut costate), du[i], array(&lq.cross[k * m + i]));
+            }
+            let columns = &self.columns[(k + 1) * nc..(k + 2) * nc];
+            for x in 0..NX {
+                let mut sums = [0.0; LANES];
+                for (panel, weights) in columns.iter().zip(&self.weights) {
+                    for lane in 0..LANES {
+                        sums[lane] = A::madd(panel[x][lane], weights[lane], sums[lane]);
+                    }
+                }
+                costate[x] += (sums[0] + sums[2]) + (sums[1] + sums[3]);
+            }
+            step.costate[k] = costate + A::mul_vec(&self.value[k + 1], &next);
+            step.dx[k + 1] = next;
+        }
+    }
+}

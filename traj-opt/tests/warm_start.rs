@@ -1,0 +1,69 @@
+//! Starting from a neighbour's solution.
+mod common;
+
+use common::quadcopter::*;
+use std::ops::ControlFlow;
+use traj_opt::{Mesh, Options, Problem, Status, Transcription, Workspace, solve_from, solve_with};
+
+/// A tenth of the circle that all of a transition's end states lie on moves by less than this.
+const SHIFT: f64 = 0.2;
+
+#[test]
+fn neighbours_are_solved_in_a_fraction_of_the_iterations() {
+    let mut workspace = Workspace::new();
+    let options = Options::default().with_tolerance(1e-6);
+    let proceed = |_: &traj_opt::Iteration| ControlFlow::Continue(());
+    let (mut cold_iterations, mut warm_iterations) = (0, 0);
+    for r in references().iter().step_by(5) {
+        let t = thrust_rate(&r.start, &r.end);
+        let guess = naive_guess(&t, hover_thrust_rate());
+        let mesh = Mesh::uniform(40);
+        let mut solve = |t: &Transition<ThrustRate, 10>| {
+            solve_with(&mut workspace, t, &mesh, Transcription::HermiteSimpson, &guess, &options, proceed)
+                .expect("valid input")
+        };
+        let previous = solve(&t);
+        let mut end = r.end;
+        end[0] += SHIFT;
+        end[2] -= SHIFT;
+        let near = thrust_rate(&r.start, &end);
+        let cold = solve(&near);
+        let warm = solve_from(&mut workspace, &near, &previous, &options, proceed).expect("valid input");
+        assert!(previous.status.is_success() && cold.status.is_success());
+        assert_eq!(warm.status, Status::Solved, "transition {}", r.id);
+        // both are local minima; the neighbour's basin is kept, which the guess need not find
+        assert!(warm.objective < cold.objective * 1.001, "{} against {}", warm.objective, cold.objective);
+        let last = warm.states()[warm.states().len() - 1];
+        assert!((last[0] - near.end[0]).abs() < 1e-4, "the end state is the new one");
+        assert_eq!(near.bounds().terminal_lower[0], near.end[0]);
+        cold_iterations += cold.iterations;
+        warm_iterations += warm.iterations;
+    }
+    assert!(2 * warm_iterations < cold_iterations, "{warm_iterations} warm, {cold_iterations} cold");
+}
+
+#[test]
+fn another_shape_falls_back_to_the_trajectory_as_a_guess() {
+    let r = &references()[0];
+    let t = thrust_rate(&r.start, &r.end);
+    let proceed = |_: &traj_opt::Iteration| ControlFlow::Continue(());
+    let mut workspace = Workspace::new();
+    let guess = naive_guess(&t, hover_thrust_rate());
+    let coarse = solve_with(
+        &mut workspace,
+        &t,
+        &Mesh::uniform(10),
+        Transcription::Trapezoidal,
+        &guess,
+        &Options::default(),
+        proceed,
+    )
+    .expect("valid input");
+    let mut free_end = thrust_rate(&r.start, &r.end);
+    free_end.bounds.terminal_lower[2] = f64::NEG_INFINITY;
+    free_end.bounds.terminal_upper[2] = f64::INFINITY;
+    let solved =
+        solve_from(&mut workspace, &free_end, &coarse, &Options::default(), proceed).expect("valid input");
+    assert!(solved.status.is_success());
+    assert!(solved.objective <= coarse.objective * (1.0 + 1e-6));
+}
