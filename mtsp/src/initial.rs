@@ -48,9 +48,14 @@ fn toured<M: Metric>(
 ) -> Result<Option<Vec<Vec<usize>>>, Error> {
     let mut nodes = vec![problem.start(0)];
     nodes.extend(problem.targets());
-    let subset = Subset { metric: problem.metric(), nodes: &nodes };
-    let tour = improve(&subset, christofides(&subset)?)?;
-    let mut order = tour.into_order();
+    let mut order =
+        if nodes.iter().enumerate().all(|(i, &node)| i == node) && nodes.len() == problem.metric().len() {
+            // The whole metric keeps its coordinates, with which the tour takes O(n log n).
+            improve(problem.metric(), christofides(problem.metric())?)?.into_order()
+        } else {
+            let subset = Subset { metric: problem.metric(), nodes: &nodes };
+            improve(&subset, christofides(&subset)?)?.into_order()
+        };
     let depot = order.iter().position(|&v| v == 0).unwrap_or(0);
     order.rotate_left(depot);
     let order: Vec<usize> = order[1..].iter().map(|&v| nodes[v]).collect();

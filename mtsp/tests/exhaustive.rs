@@ -24,6 +24,13 @@ fn verify<M: Metric>(problem: &Problem<'_, M>) -> Result<(), TestCaseError> {
             prop_assert!(solved.is_err());
             continue;
         }
+        let tour = lower_bound::tour(problem, 60);
+        if objective == Objective::Total {
+            prop_assert!(tour <= best, "tour bound {} above the optimum {}", tour, best);
+        } else {
+            let mean = tour / problem.vehicles() as f64;
+            prop_assert!(mean <= best, "tour bound {} above the optimum {}", mean, best);
+        }
         for bound in bounds {
             let bound = if objective == Objective::Total { bound.total_cost } else { bound.makespan };
             prop_assert!(bound <= best, "bound {} of {:?} above the optimum {}", bound, objective, best);

@@ -20,6 +20,9 @@ const COLD: f64 = 0.001;
 /// Mean number of targets taken out and longest string: the source's values.
 const SIZE: RuinSize = RuinSize { mean: 10.0, longest: 10.0 };
 
+/// Targets for each of which the best state is kept one iteration later: copying it takes time in proportion to the targets.
+const LATE: usize = 64;
+
 /// Iterations between two questions to the caller whether to stop, and between two temperatures.
 const PATIENCE: u64 = 128;
 
@@ -127,6 +130,8 @@ impl<'a, A: Arcs> Annealer<'a, A> {
         let mut current = self.total_energy(state);
         let arc = state.total() / (state.n + state.length.len()) as f64;
         let mut temperature = hot * arc;
+        let pause = (state.n / LATE) as u64;
+        let mut kept = 0;
         let cooling = (COLD / hot).powf(PATIENCE as f64 / iterations.max(1) as f64);
         for iteration in 0..iterations {
             if !clock.tick() {
@@ -136,15 +141,16 @@ impl<'a, A: Arcs> Annealer<'a, A> {
                 temperature *= cooling;
             }
             self.ruin.apply(state, *arcs, near, SIZE, &mut self.random);
-            places.recreate(state, *arcs, &self.energy, &mut self.ruin.removed, &mut self.random);
-            let next = self.total_energy(state);
+            places.recreate(state, *arcs, &mut self.energy, &mut self.ruin.removed, &mut self.random);
+            let next = self.energy.total();
             if next >= current - temperature * (1.0 - self.random.unit()).ln() {
                 state.undo();
                 continue;
             }
             state.commit();
             current = next;
-            if better(self.setting.value(state), best_value) {
+            if iteration >= kept + pause && better(self.setting.value(state), best_value) {
+                kept = iteration;
                 state.measure(*arcs);
                 best_value = self.setting.value(state);
                 self.best.clone_from(state);
@@ -158,6 +164,10 @@ impl<'a, A: Arcs> Annealer<'a, A> {
                     break;
                 }
             }
+        }
+        if better(self.setting.value(state), best_value) {
+            state.measure(*arcs);
+            return;
         }
         state.clone_from(&self.best);
     }

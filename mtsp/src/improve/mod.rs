@@ -175,9 +175,9 @@ fn improve<M: Metric>(
         Some(routes) => State::new(targets.len(), &positions(problem, &routes), arcs),
         None => {
             let mut state = State::new(targets.len(), &vec![vec![]; m], arcs);
-            let energy = Energy::new(options.objective, limits.clone());
+            let mut energy = Energy::new(options.objective, limits.clone());
             let mut all: Vec<u32> = (0..targets.len() as u32).collect();
-            places.recreate(&mut state, arcs, &energy, &mut all, &mut Random::new(options.seed));
+            places.recreate(&mut state, arcs, &mut energy, &mut all, &mut Random::new(options.seed));
             state.commit();
             state
         }

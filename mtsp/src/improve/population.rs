@@ -92,7 +92,7 @@ fn scratch<A: Arcs>(annealer: &mut Annealer<'_, A>, n: usize, vehicles: usize) -
     let setting = annealer.setting;
     let mut state = State::new(n, &vec![vec![]; vehicles], setting.arcs);
     let mut all: Vec<u32> = (0..n as u32).collect();
-    setting.places.recreate(&mut state, setting.arcs, &annealer.energy, &mut all, &mut annealer.random);
+    setting.places.recreate(&mut state, setting.arcs, &mut annealer.energy, &mut all, &mut annealer.random);
     state.commit();
     state
 }
@@ -123,13 +123,13 @@ fn admit(pool: &mut Vec<Member>, member: Member, kept: usize) {
 /// A child of two random members.
 fn child<A: Arcs>(annealer: &mut Annealer<'_, A>, pool: &[Member], n: usize) -> State {
     let setting = annealer.setting;
-    let random = &mut annealer.random;
+    let Annealer { random, energy, .. } = annealer;
     let first = random.below(pool.len());
     let second = (first + 1 + random.below(pool.len() - 1)) % pool.len();
     let (lists, mut left) = recombine(setting, &pool[first].routes, &pool[second].routes, n, random);
     let mut state = State::new(n, &lists, setting.arcs);
-    annealer.energy.set_scale(pool[first].value.1.max(pool[second].value.1));
-    setting.places.recreate(&mut state, setting.arcs, &annealer.energy, &mut left, random);
+    energy.set_scale(pool[first].value.1.max(pool[second].value.1));
+    setting.places.recreate(&mut state, setting.arcs, energy, &mut left, random);
     state.commit();
     state
 }

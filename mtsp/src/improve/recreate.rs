@@ -24,6 +24,10 @@ struct Best {
     after: usize,
 }
 
+impl Best {
+    const NONE: Self = Self { cost: f64::INFINITY, after: usize::MAX };
+}
+
 impl Places<'_> {
     #[inline(always)]
     fn allows(&self, target: usize, vehicle: usize, vehicles: usize) -> bool {
@@ -35,7 +39,7 @@ impl Places<'_> {
         &self,
         state: &mut State,
         arcs: &impl Arcs,
-        energy: &Energy,
+        energy: &mut Energy,
         removed: &mut [u32],
         random: &mut Random,
     ) {
@@ -46,10 +50,13 @@ impl Places<'_> {
             4..6 => removed.sort_unstable_by(|a, b| far(b).total_cmp(&far(a)).then(a.cmp(b))),
             _ => removed.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)).then(a.cmp(b))),
         }
+        energy.cache_all(&state.length);
         let mut until_blink = blink_distance(random);
         for &target in removed.iter() {
             let place = self.best_place(state, arcs, energy, target as usize, &mut until_blink, random);
             state.insert(target as usize, place, arcs);
+            let vehicle = state.route[place] as usize;
+            energy.cache(vehicle, state.length[vehicle]);
         }
     }
 
@@ -64,7 +71,7 @@ impl Places<'_> {
         random: &mut Random,
     ) -> usize {
         let m = state.length.len();
-        let mut best = Best { cost: f64::INFINITY, after: usize::MAX };
+        let mut best = Best::NONE;
         let near = self.near.of(target);
         for &neighbour in &near[..self.width.min(near.len())] {
             let neighbour = neighbour as usize;
@@ -119,13 +126,18 @@ impl Places<'_> {
     }
 }
 
+/// Compares the place behind `after` with the best. The energy is convex, so slope times detour bounds the cost from below and most
+/// places need no power.
 #[inline(always)]
 fn consider(state: &State, arcs: &impl Arcs, energy: &Energy, target: usize, after: usize, best: &mut Best) {
     let before = state.next[after] as usize;
     let vehicle = state.route[after] as usize;
     let added = arcs.arc(after, target) + arcs.arc(target, before) - arcs.arc(after, before);
-    let length = state.length[vehicle];
-    let cost = energy.of(vehicle, length + added) - energy.of(vehicle, length);
+    let (value, slope) = energy.cached(vehicle);
+    if added * slope >= best.cost {
+        return;
+    }
+    let cost = energy.of(vehicle, state.length[vehicle] + added) - value;
     if cost < best.cost {
         *best = Best { cost, after };
     }

@@ -11,6 +11,7 @@
 //! | interchangeable vehicles, n >= m, makespan | ([`forest`] with exactly m routes) / m | splitting a route in two lengthens neither (triangle inequality), so some best solution uses all vehicles; the longest is at least the mean |
 //! | other vehicles, makespan | ([`forest`] with at most m routes) / m | the longest is at least the mean over all m |
 //! | limits, forbidden and required pairs | those of the problem without them, except that [`radius`] looks at allowed vehicles only | a restriction never improves the best |
+//! | closed routes from one depot, total and m makespans | [`tour`]: Held-Karp bound of the tour through the depot and all targets | all routes one after the other are a closed walk; leaving out the visits to the depot between them does not lengthen it (triangle inequality) |
 //! | several depots | legs to and from the nearest depot | a relaxation: each route's own depot is no nearer |
 //! | open routes | last legs cost 0 | exact |
 //! | asymmetric distances | the shorter direction between targets | a relaxation |
@@ -19,9 +20,11 @@
 
 mod ascent;
 mod quick;
+mod tour;
 
 pub use ascent::{NumRoutes, forest};
 pub use quick::{pigeonhole, radius};
+pub use tour::tour;
 
 use crate::problem::Problem;
 use christofides::Metric;
@@ -39,11 +42,26 @@ pub struct LowerBounds {
 /// The best lower bounds known here for both objectives, with as many ascent iterations as suit the size.
 ///
 /// # Complexity
-/// O(n^2) an iteration, 300 iterations up to 500 targets, fewer beyond, so that it takes about a second at most up to 3 000 targets.
+/// O(n^2) an iteration, 300 iterations up to 500 targets, fewer beyond, so that it takes about a second at most up to 3 000 targets;
+/// beyond, with closed routes from one depot, O(n log n) an iteration for points ([`tour`]).
 #[must_use]
 pub fn both<M: Metric>(problem: &Problem<'_, M>) -> LowerBounds {
-    with_iterations(problem, suitable_iterations(problem.targets().len()))
+    let n = problem.targets().len();
+    if n <= DENSE || problem.closed_depot().is_none() {
+        return with_iterations(problem, suitable_iterations(n));
+    }
+    // Too many for dense trees: the sparse ascent on tours sees the depot once, but gets far more iterations.
+    let total_cost = tour(problem, SPARSE_ITERATIONS).max(radius(problem));
+    let mut makespan = (total_cost / problem.vehicles() as f64).max(radius(problem));
+    if problem.is_homogeneous() {
+        makespan = makespan.max(pigeonhole(problem));
+    }
+    LowerBounds { makespan, total_cost }
 }
+
+/// Up to this many targets trees are found on the complete graph; beyond, iterations on candidate edges.
+const DENSE: usize = 3000;
+const SPARSE_ITERATIONS: usize = 60;
 
 /// Lower bounds without the ascent: radius, pigeonhole and one spanning tree. O(n (n + m)).
 #[must_use]
