@@ -57,4 +57,6 @@ pub mod page;
 pub mod plot;
 pub mod problem;
 pub mod report;
+pub mod study;
+pub mod tsplib;
 pub mod words;

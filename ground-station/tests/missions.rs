@@ -17,6 +17,7 @@ fn request(file: PathBuf, out: PathBuf) -> PlanRequest {
         rate: 20.0,
         verify: true,
         transcription: None,
+        json: false,
         quiet: true,
     }
 }

@@ -25,6 +25,8 @@ pub struct PlanRequest {
     pub verify: bool,
     /// Instead of the mission's transcription.
     pub transcription: Option<Transcription>,
+    /// Returns the content of `plan.json` instead of a text for people.
+    pub json: bool,
     /// No progress bar.
     pub quiet: bool,
 }
@@ -53,6 +55,9 @@ pub fn plan(request: &PlanRequest) -> Result<String, Failure> {
     }
     let outputs = outputs(&file, &plan, request.rate)?;
     folder::write(&request.out, &outputs.files, request.force)?;
+    if request.json {
+        return Ok(outputs.files.into_iter().next().map(|file| file.content).unwrap_or_default());
+    }
     if !outputs.warnings.is_empty() {
         text.push('\n');
     }

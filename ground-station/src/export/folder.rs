@@ -130,6 +130,36 @@ pub fn check_file(path: &Path, force: bool) -> Result<(), Failure> {
     }
 }
 
+/// Writes files into a folder, all or none; what else is there stays.
+///
+/// # Errors
+///
+/// [`Failure::Exists`] if one is there already and `force` is not given; [`Failure::Write`] if the operating system refuses.
+pub fn write_files(folder: &Path, files: &[OutputFile], force: bool) -> Result<(), Failure> {
+    files.iter().try_for_each(|file| check_file(&folder.join(&file.name), force))?;
+    let created = create_parents(folder)?;
+    let outcome = write_into(folder, files);
+    if outcome.is_err() {
+        created.iter().for_each(|folder| drop(fs::remove_dir(folder)));
+    }
+    outcome
+}
+
+/// All are written beside their places before the first is moved there.
+fn write_into(folder: &Path, files: &[OutputFile]) -> Result<(), Failure> {
+    let workshop =
+        tempfile::Builder::new().prefix(".files-").tempdir_in(folder).map_err(Failure::writing(folder))?;
+    for file in files {
+        let path = folder.join(&file.name);
+        fs::write(workshop.path().join(&file.name), &file.content).map_err(Failure::writing(&path))?;
+    }
+    for file in files {
+        let path = folder.join(&file.name);
+        fs::rename(workshop.path().join(&file.name), &path).map_err(Failure::writing(&path))?;
+    }
+    Ok(())
+}
+
 fn write_file_beside(path: &Path, parent: &Path, content: &str) -> Result<(), Failure> {
     // Made readable like any other file: a temporary file is for its owner only.
     let fresh = tempfile::Builder::new()

@@ -1,6 +1,7 @@
 //! Writing what was planned: the plan itself, trajectories and autopilot missions.
 
 mod columns;
+pub mod fleet;
 pub mod folder;
 mod json;
 pub mod plan_json;

@@ -3,12 +3,13 @@
 //! The properties `name` (or `id`), `radius`, `height` and `safe_distance` are used if present; others are left alone.
 
 use super::range::Range;
-use super::targets::{Frame, LATITUDES, LONGITUDES, Listed};
+use super::targets::{Frame, LATITUDES, LONGITUDES, Listed, Wrong};
 use crate::problem::abridged;
 use geojson::{Feature, GeometryValue, JsonObject, JsonValue, Position};
 use planner::Target;
 
-type Wrong<'a> = &'a mut dyn FnMut(Option<usize>, &str, String);
+/// Kinds of features in exports that are no targets.
+const OURS: [&str; 4] = ["circle", "path", "keep-out", "depot"];
 
 /// Reads the targets; what is wrong goes to `wrong`, feature by feature.
 pub fn read(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Listed> {
@@ -84,6 +85,10 @@ impl FeatureReader<'_> {
                 return;
             }
         };
+        // What an export of ours holds beside the targets.
+        if feature.property("kind").and_then(JsonValue::as_str).is_some_and(|kind| OURS.contains(&kind)) {
+            return;
+        }
         let template = self.template(&feature, wrong);
         match feature.geometry.as_ref().map(|geometry| &geometry.value) {
             Some(GeometryValue::Point { coordinates }) => self.push(&template, coordinates, wrong),
@@ -176,7 +181,7 @@ mod tests {
     use super::*;
     use crate::geodesy::Origin;
 
-    const FRAME: Frame = Frame { origin: Some(Origin { latitude: 42.0, longitude: -93.0, altitude: 0.0 }) };
+    const FRAME: Frame = Frame::Plane(Origin { latitude: 42.0, longitude: -93.0, altitude: 0.0 });
 
     fn read_all(text: &str) -> (Vec<Listed>, Vec<String>) {
         let mut messages = Vec::new();

@@ -4,15 +4,20 @@
 //! the planner finds wrong with the mission as far as it could be read.
 
 mod geojson_file;
+mod gpx_file;
+mod kml_file;
+mod plan_file;
 mod range;
 mod reader;
 mod settings;
 mod suggest;
 mod table_file;
 mod targets;
+mod template;
 mod vehicle;
 
 pub use targets::Listed;
+pub use template::{Template, template};
 
 use crate::failure::{Failure, reason};
 use crate::geodesy::Origin;
@@ -73,6 +78,25 @@ pub fn built_in() -> Result<MissionFile, Failure> {
     parse("(built-in) field.toml", FIELD, Path::new("")).map_err(Failure::Input)
 }
 
+/// Targets of a file that stands by itself, with longitude and latitude (degrees) as positions.
+///
+/// # Errors
+///
+/// [`Failure::Input`] with all that is wrong with it.
+pub fn read_targets(path: &Path) -> Result<Vec<Listed>, Failure> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        let message = format!("cannot be read ({}): give the name of a file with targets", reason(&error));
+        Failure::Input(vec![Problem { file: file.clone(), line: None, key: String::new(), message }])
+    })?;
+    let mut problems = Vec::new();
+    let mut wrong = |line: Option<usize>, key: &str, message: String| {
+        problems.push(Problem { file: file.clone(), line, key: key.to_owned(), message });
+    };
+    let listed = targets::from_text(&file, &text, Frame::Degrees, &mut wrong);
+    if problems.is_empty() { Ok(listed) } else { Err(Failure::Input(problems)) }
+}
+
 /// Reads a mission from its text; target files are looked for in `folder`.
 ///
 /// # Errors
@@ -105,7 +129,7 @@ fn read_root(
     let name = root.text("name").unwrap_or_default();
     let origin = read_origin(root);
     let autopilot = root.choice("autopilot", &words::AUTOPILOTS);
-    let frame = Frame { origin };
+    let frame = Frame::of(origin);
     let (listed, merge_within) = targets::read(root, reader, frame, folder);
     let fleet = settings::fleet(root, reader)?;
     let targets = listed.iter().map(|listed| listed.target.clone()).collect();

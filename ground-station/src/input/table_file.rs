@@ -5,7 +5,7 @@
 
 use super::range::Range;
 use super::suggest::nearest;
-use super::targets::{Frame, LATITUDES, LONGITUDES, Listed};
+use super::targets::{Frame, LATITUDES, LONGITUDES, Listed, Wrong};
 use crate::problem::abridged;
 use planner::Target;
 
@@ -24,8 +24,6 @@ const COLUMNS: [&str; 13] = [
     "height",
     "safe_distance",
 ];
-
-type Wrong<'a> = &'a mut dyn FnMut(Option<usize>, &str, String);
 
 /// Reads the targets; what is wrong goes to `wrong`, row by row.
 pub fn read(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Listed> {
@@ -165,7 +163,7 @@ mod tests {
     use super::*;
     use crate::geodesy::Origin;
 
-    const FRAME: Frame = Frame { origin: Some(Origin { latitude: 42.0, longitude: -93.0, altitude: 0.0 }) };
+    const FRAME: Frame = Frame::Plane(Origin { latitude: 42.0, longitude: -93.0, altitude: 0.0 });
 
     fn read_all(text: &str, frame: Frame) -> (Vec<Listed>, Vec<String>) {
         let mut messages = Vec::new();
@@ -178,8 +176,7 @@ mod tests {
 
     #[test]
     fn local_and_geographic_rows() {
-        let (targets, messages) =
-            read_all("id,east,north,radius\na,1,2,\nb, 3.5 ,-4,2.5\n", Frame { origin: None });
+        let (targets, messages) = read_all("id,east,north,radius\na,1,2,\nb, 3.5 ,-4,2.5\n", Frame::Nowhere);
         assert!(messages.is_empty(), "{messages:?}");
         assert_eq!(targets[0].target, Target { name: "a".into(), ..Target::at([1.0, 2.0]) });
         assert_eq!(targets[1].target.radius, Some(2.5));
@@ -210,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_missing_origin_and_a_missing_header_are_said() {
-        let (_, messages) = read_all("id,lat,lon\n1,42,-93\n", Frame { origin: None });
+        let (_, messages) = read_all("id,lat,lon\n1,42,-93\n", Frame::Nowhere);
         assert!(messages[0].contains("no usable origin: add origin ="), "{messages:?}");
         let (_, messages) = read_all("1,2,3\n", FRAME);
         assert!(messages[0].contains("has no coordinates"), "{messages:?}");

@@ -2,7 +2,7 @@
 
 use super::range::Range;
 use super::reader::{Reader, Section};
-use super::{geojson_file, table_file};
+use super::{geojson_file, gpx_file, kml_file, plan_file, table_file};
 use crate::geodesy::Origin;
 use planner::Target;
 use std::path::Path;
@@ -23,21 +23,37 @@ pub struct Listed {
     pub key: String,
 }
 
-/// What turns geographic coordinates into local ones; absent if the mission has no usable origin.
+/// What turns geographic coordinates into those of a target.
 #[derive(Debug, Clone, Copy)]
-pub struct Frame {
-    /// The origin, if the mission has one.
-    pub origin: Option<Origin>,
+pub enum Frame {
+    /// Nothing: the mission has no usable origin.
+    Nowhere,
+    /// East and north of an origin.
+    Plane(Origin),
+    /// Left as they are, longitude and latitude (degrees), for files that stand by themselves.
+    Degrees,
 }
 
 impl Frame {
+    /// The frame of a mission.
+    pub const fn of(origin: Option<Origin>) -> Self {
+        match origin {
+            Some(origin) => Self::Plane(origin),
+            None => Self::Nowhere,
+        }
+    }
+
     /// East and north of a latitude and longitude, or what is wrong with them and what to do about it.
     pub fn place(&self, latitude: f64, longitude: f64) -> Result<[f64; 2], (String, &'static str)> {
-        let Some(origin) = self.origin else {
-            return Err((
-                "is geographic, but the mission has no usable origin".to_owned(),
-                "add origin = { latitude = .., longitude = .., altitude = .. } to the mission",
-            ));
+        let origin = match self {
+            Self::Degrees => return Ok([longitude, latitude]),
+            Self::Plane(origin) => origin,
+            Self::Nowhere => {
+                return Err((
+                    "is geographic, but the mission has no usable origin".to_owned(),
+                    "add origin = { latitude = .., longitude = .., altitude = .. } to the mission",
+                ));
+            }
         };
         let position = origin.local(latitude, longitude);
         let distance = position[0].hypot(position[1]);
@@ -64,7 +80,7 @@ pub fn read(root: &Section<'_, '_>, reader: &Reader<'_>, frame: Frame, folder: &
             Ok(text) => listed.extend(from_file(&path, &text, reader, frame)),
             Err(error) => item.wrong(
                 &format!("cannot be read ({}: {})", path.display(), crate::failure::reason(&error)),
-                "give the name of a GeoJSON or CSV file, relative to the mission file",
+                "give the name of a file with targets, relative to the mission file",
             ),
         }
     }
@@ -152,19 +168,85 @@ fn missing<T>(section: &Section<'_, '_>, key: &str, remedy: &str) -> Option<T> {
 
 fn from_file(path: &Path, text: &str, reader: &Reader<'_>, frame: Frame) -> Vec<Listed> {
     let file = path.display().to_string();
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let mut wrong =
         |line: Option<usize>, key: &str, message: String| reader.add_elsewhere(&file, line, key, message);
-    match extension.to_ascii_lowercase().as_str() {
-        "geojson" | "json" => geojson_file::read(&file, text, frame, &mut wrong),
-        "csv" => table_file::read(&file, text, frame, &mut wrong),
-        _ => {
-            wrong(
-                None,
-                "targets.file",
-                "targets.file is of an unknown kind: give a .geojson, .json or .csv file".into(),
+    from_text(&file, text, frame, &mut wrong)
+}
+
+/// Receives what is wrong: line, key, message.
+pub type Wrong<'a> = &'a mut dyn FnMut(Option<usize>, &str, String);
+
+type Read = fn(&str, &str, Frame, Wrong<'_>) -> Vec<Listed>;
+
+/// Who reads which files, by the ends of their names.
+const READERS: [(&str, Read); 7] = [
+    ("geojson", geojson_file::read),
+    ("json", geojson_file::read),
+    ("csv", table_file::read),
+    ("kml", kml_file::read),
+    ("gpx", gpx_file::read),
+    ("plan", plan_file::read),
+    ("waypoints", plan_file::read_waypoints),
+];
+
+/// The targets of a file, its kind told by the end of its name.
+pub fn from_text(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Listed> {
+    let end =
+        Path::new(file).extension().and_then(|end| end.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match READERS.iter().find(|(known, _)| *known == end) {
+        Some((_, read)) => read(file, text, frame, wrong),
+        None => {
+            let known: Vec<&str> = READERS.iter().map(|(end, _)| *end).collect();
+            let message = format!(
+                "targets.file is of an unknown kind: give a file that ends in .{}",
+                known.join(", .")
             );
+            wrong(None, "targets.file", message);
             Vec::new()
         }
     }
+}
+
+/// A geographic place of a file, not yet in the frame of a mission.
+#[derive(Debug, Clone, Default)]
+pub struct Place {
+    /// Latitude (degrees).
+    pub latitude: f64,
+    /// Longitude (degrees).
+    pub longitude: f64,
+    /// All but its position.
+    pub target: Target,
+    /// What it is called in the file.
+    pub key: String,
+}
+
+impl Place {
+    /// The target, if the place is one on earth and in the frame.
+    pub fn listed(self, file: &str, frame: Frame, wrong: Wrong<'_>) -> Option<Listed> {
+        let Self { latitude, longitude, target, key } = self;
+        for (what, value, range) in [("latitude", latitude, LATITUDES), ("longitude", longitude, LONGITUDES)]
+        {
+            if !range.contains(value) {
+                wrong(None, &key, format!("{key}: {what} {value} is out of range: give a number {range}"));
+                return None;
+            }
+        }
+        match frame.place(latitude, longitude) {
+            Ok(position) => {
+                Some(Listed { target: Target { position, ..target }, file: file.to_owned(), line: None, key })
+            }
+            Err((what, remedy)) => {
+                wrong(None, &key, format!("{key} {what}: {remedy}"));
+                None
+            }
+        }
+    }
+}
+
+/// The targets of all places; a file without any is wrong.
+pub fn all_listed(places: Vec<Place>, file: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Listed> {
+    if places.is_empty() {
+        wrong(None, "file", "no target could be read: give a file with points".to_owned());
+    }
+    places.into_iter().filter_map(|place| place.listed(file, frame, wrong)).collect()
 }

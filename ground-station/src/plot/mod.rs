@@ -13,7 +13,9 @@ mod path;
 mod profile;
 mod svg;
 
+pub use axis::{tick_label, ticks};
 pub use from_plan::{map_scene, speed, tilt, vehicle_profile};
 pub use map::{MapCircle, MapScene, MapTarget, MapVehicle, map};
 pub use palette::colour;
 pub use profile::{Band, Limit, Panel, Profile, profile};
+pub use svg::{Anchor, Stroke, Svg, TextStyle};
