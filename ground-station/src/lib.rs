@@ -15,6 +15,11 @@
 //! | `plan.json` | [`export::plan_json::PlanDocument`] |
 //! | trajectories as CSV | [`export::trajectory_csv`] |
 //! | QGroundControl missions for ArduPilot and PX4 | [`export::qgc`] |
+//! | KML, GeoJSON, `QGC WPL 110`, tables | [`export::fleet`] |
+//! | what each way of execution really does | [`execution`] |
+//! | one HTML page that flies the vehicles | [`page`] |
+//! | the live MAVLink link | [`link`] |
+//! | the paper's figures and simulations | [`study`] |
 //! | the output folder, written whole or not at all | [`export::folder`] |
 //! | map and profiles as SVG | [`plot`] |
 //! | the table on the terminal | [`report`] |
@@ -38,6 +43,8 @@
 //! - The output folder is replaced as a whole: after a failure it is as it was before. A folder that holds anything but a
 //!   plan of ours is never replaced unasked.
 //! - The same mission gives the same bytes.
+//! - Nothing moves without leave: a session arms and takes off only if it is told to, and lets go of a vehicle whose mode
+//!   somebody else changes.
 //!
 //! What is *not* guaranteed: that an autopilot flies a `.plan` file as planned. ArduPilot and PX4 cannot; what they will do
 //! instead is among the warnings. The trajectory tables are what a vehicle that is streamed its setpoints flies.

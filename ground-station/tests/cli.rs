@@ -151,3 +151,48 @@ fn a_leg_that_cannot_be_flown_is_said_and_nothing_is_written() -> Result<(), Box
     assert!(!home.path().join("out").exists());
     Ok(())
 }
+
+/// Commands that need no planning, as a user runs them.
+#[test]
+fn missions_are_begun_and_points_are_solved() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    assert_eq!(run(&["init"], home.path())?.status.code(), Some(0));
+    assert_eq!(run(&["init"], home.path())?.status.code(), Some(1), "a file is not replaced unasked");
+    assert_eq!(run(&["check", "mission.toml"], home.path())?.status.code(), Some(0));
+    std::fs::write(home.path().join("points.csv"), "x,y\n0,0\n30,0\n0,40\n-35,5\n10,10\n")?;
+    let tour = run(&["tour", "points.csv", "--json"], home.path())?;
+    assert!(text(&tour.stdout).contains("\"nodes\":5"), "{}", text(&tour.stdout));
+    let routes = run(&["routes", "points.csv", "--vehicles", "3"], home.path())?;
+    assert!(text(&routes.stdout).contains("makespan 80.000"), "{}", text(&routes.stdout));
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(text(&run(&["completions", shell], home.path())?.stdout).contains("ground-station"));
+    }
+    let study = ["study", "cost", "--trials", "2", "--targets", "10", "--vehicles", "2", "--out", "s"];
+    assert_eq!(run(&study, home.path())?.status.code(), Some(0));
+    let merge = run(&["study", "merge", "s/cost.csv", "s/cost.csv", "--out", "m"], home.path())?;
+    assert!(text(&merge.stdout).contains("m = 2   10       4  "), "{}", text(&merge.stdout));
+    Ok(())
+}
+
+/// Two targets flown in wind: files whole, errors below what a controller is asked for.
+#[test]
+fn a_plan_is_flown_in_wind() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    assert_eq!(run(&["init", "m.toml", "--vehicles", "1"], home.path())?.status.code(), Some(0));
+    let simulate =
+        run(&["simulate", "m.toml", "--wind", "2,-1", "--gusts", "3", "--noise", "--out", "s"], home.path())?;
+    assert_eq!(simulate.status.code(), Some(0), "{}", text(&simulate.stderr));
+    let table = std::fs::read_to_string(home.path().join("s/flown-1.csv"))?;
+    let errors = table.lines().skip(1).filter_map(|line| line.rsplit(',').next()?.parse::<f64>().ok());
+    assert!(table.lines().count() > 100 && errors.fold(0.0, f64::max) < 1.5);
+    let log = std::fs::read_to_string(home.path().join("s/events.log"))?;
+    assert!(
+        log.contains("takes off") && log.contains("has circled 2") && log.contains("is back at its pad"),
+        "{log}"
+    );
+    assert!(home.path().join("s/flown.svg").exists());
+    let again = run(&["simulate", "m.toml", "--out", "s"], home.path())?;
+    assert_eq!(again.status.code(), Some(1));
+    assert_eq!(run(&["simulate", "--wind", "storm"], home.path())?.status.code(), Some(2));
+    Ok(())
+}

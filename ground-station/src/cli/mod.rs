@@ -8,7 +8,7 @@ mod studying;
 mod values;
 
 pub use flying::FlyArguments;
-pub use planning::{ExportArguments, PlanArguments, ReportArguments};
+pub use planning::{ExportArguments, PlanArguments, ReportArguments, SimulateArguments};
 pub use solving::{RouteArguments, SolveArguments};
 pub use starting::StartArguments;
 pub use studying::{PlaceArguments, StudyArguments, StudyCommand};
@@ -67,6 +67,9 @@ pub enum Command {
     /// Plans a mission and writes it in the formats of maps and other ground stations.
     #[command(after_help = planning::EXPORT_EXAMPLES)]
     Export(ExportArguments),
+    /// Plans a mission and lets a simulated team fly it in wind: flown against planned.
+    #[command(after_help = planning::SIMULATE_EXAMPLES)]
+    Simulate(SimulateArguments),
     /// Flies a mission on real or simulated vehicles over MAVLink.
     #[command(after_help = flying::FLY_EXAMPLES)]
     Fly(FlyArguments),
@@ -145,6 +148,7 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         }
         Command::Report(arguments) => unless(arguments.quiet, command::report(&arguments.request())),
         Command::Export(arguments) => unless(arguments.quiet, command::export(&arguments.request())),
+        Command::Simulate(arguments) => unless(arguments.quiet, command::simulate(&arguments.request())),
         Command::Fly(arguments) => command::fly(&arguments.request(), &mut |line| println!("{line}")),
         Command::Init { out, start } => command::init(&start.request(None, out)),
         Command::Import { targets, out, start } => command::init(&start.request(Some(targets), out)),

@@ -1,7 +1,9 @@
 //! Arguments of `plan`, `report` and `export`.
 
-use super::values::{TranscriptionWord, parse_autopilot, parse_format, parse_rate, parse_way};
-use crate::command::{ExportRequest, PlanRequest, ReportRequest};
+use super::values::{
+    TranscriptionWord, parse_autopilot, parse_format, parse_not_negative, parse_rate, parse_way, parse_wind,
+};
+use crate::command::{ExportRequest, PlanRequest, ReportRequest, SimulateRequest};
 use crate::execution::Way;
 use crate::export::fleet::Format;
 use crate::input::Autopilot;
@@ -21,6 +23,13 @@ Examples:
   ground-station report                                  the built-in field mission as report.html
   ground-station report pasture.toml --out pasture.html  another mission, another file
 A link to a moment: report.html#t=12.5";
+
+pub(super) const SIMULATE_EXAMPLES: &str = "\
+Examples:
+  ground-station simulate field.toml                      still air
+  ground-station simulate field.toml --wind 3,-2 --gusts 5 --noise --seed 7
+
+Files: flown.svg (planned and flown), flown-<i>.csv, events.log.";
 
 pub(super) const EXPORT_EXAMPLES: &str = "\
 Examples:
@@ -103,6 +112,41 @@ pub struct ExportArguments {
     /// Neither progress bar nor list.
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// Arguments of `simulate`.
+#[derive(Debug, clap::Args)]
+pub struct SimulateArguments {
+    /// The mission file (TOML); without one, the built-in field mission.
+    pub file: Option<PathBuf>,
+    /// The folder into which the files go.
+    #[arg(long, value_name = "DIR", default_value = "simulated")]
+    pub out: PathBuf,
+    /// Steady wind towards east and north (m/s): EAST,NORTH.
+    #[arg(long, value_name = "E,N", default_value = "0,0", value_parser = parse_wind, allow_hyphen_values = true)]
+    pub wind: [f64; 2],
+    /// Gusts as in a wind of this speed at 20 ft (m/s).
+    #[arg(long, value_name = "M/S", default_value_t = 0.0, value_parser = parse_not_negative)]
+    pub gusts: f64,
+    /// Errors of the estimates that the controllers see, as of satellite positioning with corrections.
+    #[arg(long)]
+    pub noise: bool,
+    /// Seed of gusts and errors.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Replace files that are there.
+    #[arg(long)]
+    pub force: bool,
+    /// Neither progress bar nor table.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl SimulateArguments {
+    pub(super) fn request(self) -> SimulateRequest {
+        let Self { file, out, wind, gusts, noise, seed, force, quiet } = self;
+        SimulateRequest { file, out, wind, gusts, noise, seed, force, quiet }
+    }
 }
 
 impl PlanArguments {

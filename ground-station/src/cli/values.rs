@@ -59,6 +59,22 @@ pub(super) fn parse_objective(text: &str) -> Result<Objective, String> {
     parse_word(&[("makespan", Objective::Makespan), ("total", Objective::Total)], text)
 }
 
+pub(super) fn parse_not_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number >= 0.0 && number.is_finite());
+    number.ok_or_else(|| "give a number, 0 or more".to_owned())
+}
+
+/// `EAST,NORTH`, up to a storm.
+pub(super) fn parse_wind(text: &str) -> Result<[f64; 2], String> {
+    const STORM: f64 = 40.0;
+    let read = || {
+        let (east, north) = text.split_once(',')?;
+        let wind = [east.trim().parse().ok()?, north.trim().parse::<f64>().ok()?];
+        wind.iter().all(|part: &f64| part.abs() <= STORM).then_some(wind)
+    };
+    read().ok_or_else(|| format!("give EAST,NORTH in m/s, each at most {STORM}: 3,-2"))
+}
+
 /// `I/N`, both from 1.
 pub(super) fn parse_shard(text: &str) -> Result<Shard, String> {
     let read = || {

@@ -7,6 +7,7 @@ mod init;
 mod outputs;
 mod plan;
 mod report;
+mod simulate;
 mod solve;
 mod study;
 
@@ -19,5 +20,6 @@ pub use outputs::{Outputs, outputs};
 pub(crate) use plan::rows;
 pub use plan::{PlanRequest, plan};
 pub use report::{ReportRequest, report};
+pub use simulate::{SimulateRequest, simulate};
 pub use solve::{SolveRequest, routes, tour};
 pub use study::{Study, merge, study, transitions};

@@ -60,7 +60,7 @@ fn collect(list: &[Value], path: &str, items: &mut Vec<Item>) {
 /// Reads the targets of a `.waypoints`; what is wrong goes to `wrong`.
 pub fn read_waypoints(file: &str, text: &str, frame: Frame, wrong: Wrong<'_>) -> Vec<Listed> {
     let mut lines = text.lines().enumerate();
-    if !lines.next().is_some_and(|(_, line)| line.trim() == "QGC WPL 110") {
+    if lines.next().is_none_or(|(_, line)| line.trim() != "QGC WPL 110") {
         wrong(Some(1), "", "the first line is not QGC WPL 110: give such a file".to_owned());
         return Vec::new();
     }
