@@ -72,6 +72,17 @@ pub enum Problem {
         /// The range in words: "above 0", "from 4 to 2000".
         range: &'static str,
     },
+    /// A plan cannot follow events.
+    #[error("the plan cannot follow events: plan the mission itself, with merge_within = 0")]
+    NotReplannable,
+    /// An event names something that there is not.
+    #[error("there is no {what} {index}: number them from 0, as the mission does")]
+    Unknown {
+        /// Target or vehicle.
+        what: &'static str,
+        /// Its number.
+        index: usize,
+    },
     /// There is nobody to fly.
     #[error("fleet.vehicles = 0: give at least one vehicle")]
     NoVehicles,
@@ -184,7 +195,8 @@ impl Problem {
         match self {
             Self::OutOfRange { field, .. } => field,
             Self::NoVehicles => "fleet.vehicles",
-            Self::NoTargets => "targets",
+            Self::NoTargets | Self::Unknown { .. } => "targets",
+            Self::NotReplannable => "targets.merge_within",
             Self::Loiter { .. } => "loiter",
             Self::CircleInsideSafeDistance { .. } => "loiter.radius",
             Self::DepotTooClose { .. } => "depot.position",

@@ -107,6 +107,24 @@ impl Airspace<'_> {
         (freed.or(arrival), candidates)
     }
 
+    /// The transition to one entry of a circle or, if that cannot be solved, to the best of all; where it enters; what became
+    /// of the candidates.
+    pub(crate) fn reach(
+        &self,
+        here: &Motion,
+        orbit: &Orbit,
+        entry: Entry,
+    ) -> (Option<Transition>, Entry, Vec<Candidate>) {
+        let (arrival, candidates) = match self.to_entry(here, orbit, entry) {
+            (None, _) => self.to_circle(here, orbit),
+            reached => reached,
+        };
+        match arrival {
+            Some(Arrival { entry, transition, .. }) => (Some(transition), entry, candidates),
+            None => (None, entry, candidates),
+        }
+    }
+
     /// No admissible motion leads from one motion to the other sooner (s).
     fn least_time(&self, from: &Motion, to: &Motion) -> f64 {
         let proved = self.envelope.least_time_between(from, to);
@@ -200,7 +218,7 @@ impl Airspace<'_> {
         Some(Arrival { index: candidates.len() - 1, entry, transition })
     }
 
-    fn to_pad(&self, here: &Motion, pad: [f64; 3]) -> (Option<Transition>, Vec<Candidate>) {
+    pub(crate) fn to_pad(&self, here: &Motion, pad: [f64; 3]) -> (Option<Transition>, Vec<Candidate>) {
         let there = self.landing(pad);
         let solved = self.pilot.fly(
             here,

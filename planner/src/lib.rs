@@ -12,6 +12,7 @@
 //! | entries | sampled angles in both directions, bounded from below | `entry.rs`, `bound/` |
 //! | legs | the paper's Algorithm 1: the fastest transition over all entries | `legs.rs`, `transition/` |
 //! | whole routes | entries that are best for a route, not for a leg | `whole_route.rs`, `time_model.rs` |
+//! | events | what is being flown stays, the rest follows the mission as it changes | `replan/` |
 //! | certificate | makespan and total beside lower bounds | `certificate.rs` |
 //! | verification | all controls integrated again, independently | `verify.rs` |
 //!
@@ -59,6 +60,7 @@ mod mission;
 mod options;
 mod plan;
 mod planning;
+mod replan;
 mod sample;
 mod separation;
 mod time_model;
@@ -85,4 +87,5 @@ pub use plan::{
 };
 pub use planning::plan;
 pub use quad_dynamics::{Direction, LoiterYaw, ShapingLimits};
+pub use replan::{Event, Replanner, Update};
 pub use verify::{Failure, LegCheck, Tolerances, Verification};

@@ -19,6 +19,8 @@ pub struct Plan {
     pub closest_approach: Option<Approach>,
     /// What the operator should know before flying.
     pub warnings: Vec<Warning>,
+    /// Targets that need not be circled, ascending: those that have vanished ([`Replanner`](crate::Replanner)).
+    pub skipped: Vec<usize>,
 }
 
 /// A loiter circle: what is flown around a target, or around several merged ones.
@@ -47,6 +49,8 @@ pub struct Circle {
 pub struct VehiclePlan {
     /// Where it hovers before the first and after the last leg (m, east-north-up).
     pub pad: [f64; 3],
+    /// Where its nose points when it takes off (rad, from east, counter-clockwise): towards its first circle.
+    pub heading: f64,
     /// The circles it flies, in order; indices into [`Plan::circles`].
     pub route: Vec<usize>,
     /// One leg per circle of the route and one back to the pad; empty for a spare vehicle.
@@ -54,6 +58,8 @@ pub struct VehiclePlan {
     /// Time in the air (s) had every leg been the fastest by itself, as in the paper; what [`VehiclePlan::duration`] is less was
     /// gained by choosing entries for the route as a whole.
     pub leg_by_leg: f64,
+    /// When the vehicle dropped out (s after the mission's start); its route and legs are those that it had completed.
+    pub lost_at: Option<f64>,
 }
 
 /// A transition and the loiter that follows it; the last leg of a vehicle leads back to its pad and has no loiter.

@@ -53,21 +53,31 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         .zip(routes)
         .zip(legs)
         .zip(found_leg_by_leg)
-        .map(|(((pad, route), legs), leg_by_leg)| VehiclePlan { pad, route, legs, leg_by_leg })
+        .map(|(((pad, route), legs), leg_by_leg)| {
+            let heading = airspace.heading(pad, &route);
+            VehiclePlan { pad, heading, route, legs, leg_by_leg, lost_at: None }
+        })
         .collect();
     let circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
     let certificate = certificate::certificate(mission, &orbits, &envelope, &vehicles)?;
-    let mut plan = Plan { circles, vehicles, certificate, closest_approach: None, warnings: Vec::new() };
+    let mut plan = Plan {
+        circles,
+        vehicles,
+        certificate,
+        closest_approach: None,
+        warnings: Vec::new(),
+        skipped: Vec::new(),
+    };
     delay_starts(&mut plan, mission);
     plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);
-    plan.closest_approach = in_the_air(&plan, mission, closest_pair).flatten();
+    plan.closest_approach = in_the_air(&plan, mission, |fleet| closest_pair(&fleet)).flatten();
     plan.warnings = warnings(&plan, mission);
     Ok(plan)
 }
 
 /// Lets vehicles wait on their pads so that none comes too close to another in the air.
 fn delay_starts(plan: &mut Plan, mission: &Mission) {
-    let Some(delays) = in_the_air(plan, mission, |fleet| start_delays(fleet, mission.fleet.separation))
+    let Some(delays) = in_the_air(plan, mission, |fleet| start_delays(&fleet, mission.fleet.separation))
     else {
         return;
     };
@@ -79,7 +89,7 @@ fn delay_starts(plan: &mut Plan, mission: &Mission) {
 }
 
 /// How fast the mission's vehicles can possibly speed up and brake.
-fn envelope(mission: &Mission, orbits: &[Orbit]) -> Envelope {
+pub(crate) fn envelope(mission: &Mission, orbits: &[Orbit]) -> Envelope {
     let vehicle = &mission.fleet.vehicle;
     let (transition, shaping) = (&mission.transition, &mission.transition.shaping);
     let fastest = orbits.iter().map(|orbit| orbit.circle.speed).fold(0.0, f64::max);
@@ -110,10 +120,18 @@ fn reconsider_all(
         .enumerate()
         .map(|(vehicle, legs)| Flown { vehicle, pad: pads[vehicle], route: &routes[vehicle], legs })
         .collect();
-    let solved: Vec<_> = flown.iter().flat_map(|flown| airspace.solved(flown)).collect();
-    let [acceleration, speed] = airspace.envelope.level_flight();
-    let model = TimeModel::new(acceleration, speed).calibrated(&solved);
+    let model = calibrated(airspace, flown.iter().map(|flown| (flown.pad, flown.route, &flown.legs[..])));
     for_all(flown, |flown| airspace.reconsider(flown, &model))
+}
+
+/// The time model that fits the transitions solved for some flights: pad, route, legs.
+pub(crate) fn calibrated<'a>(
+    airspace: &Airspace,
+    flights: impl Iterator<Item = ([f64; 3], &'a [usize], &'a [Leg])>,
+) -> TimeModel {
+    let solved: Vec<_> = flights.flat_map(|(pad, route, legs)| airspace.solved(pad, route, legs)).collect();
+    let [acceleration, speed] = airspace.envelope.level_flight();
+    TimeModel::new(acceleration, speed).calibrated(&solved)
 }
 
 /// Does something for every route; with the feature `rayon` side by side. The first error in order counts, on any number of

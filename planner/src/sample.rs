@@ -47,10 +47,9 @@ impl<'a> Sampler<'a> {
         let planned = &self.plan.vehicles[vehicle];
         let k = planned.legs.partition_point(|leg| leg.start_time <= time).saturating_sub(1);
         let flown = planned.legs.get(k).filter(|leg| time >= leg.start_time && time <= leg.end_time());
-        flown.and_then(|leg| self.in_leg(leg, time)).unwrap_or_else(|| {
-            let [x, y, _] = planned.pad;
-            (hover(self.mission, planned.pad, [x + 1.0, y]), Phase::Pad, None)
-        })
+        flown
+            .and_then(|leg| self.in_leg(leg, time))
+            .unwrap_or_else(|| (hover(self.mission, planned.pad, planned.heading), Phase::Pad, None))
     }
 
     fn in_leg(&self, leg: &Leg, time: f64) -> Option<(Motion, Phase, Option<usize>)> {

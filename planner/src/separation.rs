@@ -21,7 +21,7 @@ pub(crate) struct Airborne<'a> {
 pub(crate) fn in_the_air<R>(
     plan: &Plan,
     mission: &Mission,
-    ask: impl Fn(&[Option<Airborne>]) -> R,
+    ask: impl FnOnce(Vec<Option<Airborne>>) -> R,
 ) -> Option<R> {
     let sampler = Sampler::new(plan, mission)?;
     let airborne = |vehicle: usize| {
@@ -37,7 +37,7 @@ pub(crate) fn in_the_air<R>(
         })
     };
     let fleet: Vec<Option<Airborne>> = (0..plan.vehicles.len()).map(airborne).collect();
-    Some(ask(&fleet))
+    Some(ask(fleet))
 }
 
 /// The least distance between two vehicles while both fly, to within [`RESOLUTION`]; `None` if they never fly together.

@@ -43,6 +43,11 @@ impl TimeModel {
         self.offset + self.slope * self.level(from, to)
     }
 
+    /// About how long a transition over a distance (m) takes that starts and ends at a speed (m/s) in its direction (s).
+    pub(crate) fn time_over(&self, distance: f64, speed: f64) -> f64 {
+        self.offset + self.slope * self.along(distance, speed, speed)
+    }
+
     fn level(&self, from: &Motion, to: &Motion) -> f64 {
         let offset = (to.position - from.position).xy();
         let (v_0, v_1) = (from.velocity.xy(), to.velocity.xy());

@@ -149,9 +149,7 @@ impl Plan {
         let orbits = orbits(mission).unwrap_or_default();
         let pilot = Pilot::new(mission, &orbits);
         for (vehicle, planned) in self.vehicles.iter().enumerate() {
-            let [x, y, _] = planned.pad;
-            let first = planned.route.first().and_then(|&circle| orbits.get(circle));
-            let pad = hover(mission, planned.pad, first.map_or([x + 1.0, y], |orbit| orbit.circle.centre));
+            let pad = hover(mission, planned.pad, planned.heading);
             let mut here = pad;
             let mut time = planned.legs.first().map_or(0.0, |leg| leg.start_time);
             for (index, leg) in planned.legs.iter().enumerate() {
@@ -167,13 +165,14 @@ impl Plan {
                 here = left.unwrap_or(pad);
                 time = leg.end_time();
             }
-            let complete = if planned.route.is_empty() { 0 } else { planned.route.len() + 1 };
+            let home = usize::from(!planned.route.is_empty() && planned.lost_at.is_none());
+            let complete = planned.route.len() + home;
             if planned.legs.len() != complete {
                 verification.failures.push(Failure::Joint { vehicle, leg: planned.legs.len() });
             }
         }
         verification.count_targets(self, mission);
-        let approach = in_the_air(self, mission, closest_pair).flatten();
+        let approach = in_the_air(self, mission, |fleet| closest_pair(&fleet)).flatten();
         let least = mission.fleet.separation - 2.0 * RESOLUTION;
         let close = approach.filter(|approach| approach.distance < least);
         verification.failures.extend(close.map(|approach| Failure::Separation { approach }));
@@ -246,7 +245,9 @@ impl Verification {
                 }
             }
         }
-        let wrong = times.into_iter().enumerate().filter(|&(_, times)| times != 1);
+        let wanted = |target: usize| usize::from(!plan.skipped.contains(&target));
+        let wrong =
+            times.into_iter().enumerate().filter(|&(target, times)| times != 1 && times != wanted(target));
         self.failures.extend(wrong.map(|(target, times)| Failure::Coverage { target, times }));
     }
 }

@@ -23,10 +23,10 @@ pub(crate) struct Flown<'a> {
 
 impl Airspace<'_> {
     /// All transitions that were solved along a route: from, to, time (s).
-    pub(crate) fn solved(&self, flown: &Flown) -> Vec<(Motion, Motion, f64)> {
+    pub(crate) fn solved(&self, pad: [f64; 3], route: &[usize], legs: &[Leg]) -> Vec<(Motion, Motion, f64)> {
         let mut solved = Vec::new();
-        let mut here = self.take_off(flown.pad, flown.route);
-        for leg in &flown.legs {
+        let mut here = self.take_off(pad, route);
+        for leg in legs {
             let Some(loiter) = leg.loiter else { break };
             let orbit = &self.orbits[loiter.circle];
             for candidate in &leg.candidates {
@@ -90,16 +90,22 @@ impl Airspace<'_> {
         path
     }
 
+    /// The direction from a pad to the first circle of a route (rad, from east, counter-clockwise).
+    pub(crate) fn heading(&self, pad: [f64; 3], route: &[usize]) -> f64 {
+        route.first().map_or(0.0, |&circle| {
+            let [x, y] = self.orbits[circle].circle.centre;
+            (y - pad[1]).atan2(x - pad[0])
+        })
+    }
+
     /// The hover from which a route starts.
     pub(crate) fn take_off(&self, pad: [f64; 3], route: &[usize]) -> Motion {
-        let towards =
-            route.first().map_or([pad[0] + 1.0, pad[1]], |&circle| self.orbits[circle].circle.centre);
-        hover(self.mission, pad, towards)
+        hover(self.mission, pad, self.heading(pad, route))
     }
 
     /// The hover in which a route ends, with any yaw.
     pub(crate) fn landing(&self, pad: [f64; 3]) -> Motion {
-        hover(self.mission, pad, [pad[0] + 1.0, pad[1]])
+        hover(self.mission, pad, 0.0)
     }
 }
 

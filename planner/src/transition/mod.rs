@@ -110,10 +110,9 @@ impl Pilot {
     }
 }
 
-/// The mission's vehicle hovering at `position` with its nose towards a place (east, north).
-pub(crate) fn hover(mission: &Mission, position: [f64; 3], towards: [f64; 2]) -> Motion {
-    let yaw = (towards[1] - position[1]).atan2(towards[0] - position[0]);
-    Motion::hover(&mission.fleet.vehicle, Vector3::from(position), yaw)
+/// The mission's vehicle hovering at `position` with its nose in a direction (rad, from east, counter-clockwise).
+pub(crate) fn hover(mission: &Mission, position: [f64; 3], heading: f64) -> Motion {
+    Motion::hover(&mission.fleet.vehicle, Vector3::from(position), heading)
 }
 
 impl Orbit {

@@ -1,0 +1,277 @@
+//! Plans that follow events while the team flies (the paper's Algorithm 3).
+//!
+//! | step | file |
+//! |---|---|
+//! | what of a flight is settled at a moment, and where it can still be changed | `settled.rs` |
+//! | who takes a target over, and where in its route | `insertion.rs` |
+//! | the legs of a changed route: those that stay are kept, the others solved | `refly.rs` |
+
+mod insertion;
+mod refly;
+mod settled;
+
+use crate::circles::orbits;
+use crate::error::{Error, Problem};
+use crate::legs::Airspace;
+use crate::mission::{Mission, Target};
+use crate::options::{Options, Watch};
+use crate::plan::{Approach, Plan};
+use crate::planning::{calibrated, envelope};
+use crate::separation::{closest_pair, in_the_air};
+use crate::time_model::TimeModel;
+use crate::transition::Pilot;
+use settled::Settled;
+
+/// Something that happens while the team flies. Targets and vehicles are numbered from 0.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Event {
+    /// There is a new target; it gets the next index.
+    TargetAppears(Target),
+    /// A target need not be circled any more; its safe distance is kept all the same.
+    TargetVanishes(usize),
+    /// A target is somewhere else: east, north (m). One that has been circled is not circled again: it becomes another target,
+    /// which only has a safe distance.
+    TargetMoves(usize, [f64; 2]),
+    /// A vehicle drops out, in the air or on its pad; others take over what it has not completed.
+    VehicleFails(usize),
+    /// A vehicle that has not flown yet may (again) be used.
+    VehicleReturns(usize),
+}
+
+/// What an event has changed.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Update {
+    /// The vehicles whose flights are different now, ascending.
+    pub vehicles: Vec<usize>,
+    /// Targets that wait because no vehicle is left that could take them; they are tried again at every later event.
+    pub waiting: Vec<usize>,
+    /// Where airborne vehicles come closer than the mission's separation from now on: an operator must decide.
+    pub conflict: Option<Approach>,
+}
+
+/// A mission in flight: takes events, hands out updated plans.
+///
+/// What is being flown stays as it is: a vehicle in a loiter finishes it, one on its way to a circle flies there, unless that
+/// target is gone or the way now breaks a safe distance; then it turns off at the next knot of its trajectory that is at least
+/// [`Replanner::REACTION`] seconds away. No waiting target is lost, and none that has been circled is circled again.
+#[derive(Debug, Clone)]
+pub struct Replanner {
+    mission: Mission,
+    plan: Plan,
+    model: TimeModel,
+    usable: Vec<bool>,
+    waiting: Vec<usize>,
+}
+
+impl Replanner {
+    /// Time between an event and the first change of what is being flown (s).
+    pub const REACTION: f64 = 0.1;
+
+    /// Takes over a plan that is about to be flown.
+    ///
+    /// # Errors
+    /// [`Error::Mission`] if the plan is not the mission's, or if the mission merges targets (`merge_within` above 0): then a
+    /// target has no circle of its own that could move.
+    pub fn new(mission: Mission, plan: Plan) -> Result<Self, Error> {
+        if mission.merge_within > 0.0 || plan.circles.len() != mission.targets.len() {
+            return Err(Error::Mission { problems: vec![Problem::NotReplannable] });
+        }
+        let usable = vec![true; plan.vehicles.len()];
+        let model = {
+            let orbits = orbits(&mission).map_err(of_loiter)?;
+            let airspace = airspace(&mission, &orbits);
+            let flown = plan.vehicles.iter();
+            calibrated(&airspace, flown.map(|flown| (flown.pad, &flown.route[..], &flown.legs[..])))
+        };
+        Ok(Self { mission, plan, model, usable, waiting: Vec::new() })
+    }
+
+    /// The plan as it stands.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The mission as it stands: targets that have appeared are in it, and those that have vanished still are.
+    #[must_use]
+    pub fn mission(&self) -> &Mission {
+        &self.mission
+    }
+
+    /// Takes in an event at `time` (s after the mission's start); on an error everything stays as it was.
+    ///
+    /// # Errors
+    /// [`Error::Mission`] if the event makes the mission impossible to fly or names a target or vehicle that there is not;
+    /// [`Error::Leg`] if no way could be found to a target.
+    ///
+    /// # Complexity
+    /// Mostly the optimal control problems of the changed legs: two for a target that appears, one for one that vanishes.
+    pub fn apply(&mut self, time: f64, event: &Event) -> Result<Update, Error> {
+        let mut next = self.clone();
+        let changes = next.take_in(time, event)?;
+        let update = next.refly(time, changes)?;
+        *self = next;
+        Ok(update)
+    }
+
+    /// Changes the mission, and says which targets must find a place, which lose theirs, and whether to share out anew.
+    fn take_in(&mut self, time: f64, event: &Event) -> Result<Changes, Error> {
+        let mut changes = Changes { wanted: std::mem::take(&mut self.waiting), ..Changes::default() };
+        match *event {
+            Event::TargetAppears(ref target) => {
+                changes.wanted.push(self.mission.targets.len());
+                self.mission.targets.push(target.clone());
+            }
+            Event::TargetVanishes(target) => {
+                self.known(target < self.mission.targets.len(), "target", target)?;
+                changes.wanted.retain(|&waiting| waiting != target);
+                changes.gone.push(target);
+                if !self.plan.skipped.contains(&target) {
+                    self.plan.skipped.push(target);
+                }
+            }
+            Event::TargetMoves(target, position) => {
+                self.known(target < self.mission.targets.len(), "target", target)?;
+                if self.plan.skipped.contains(&target) || self.is_settled(target, time) {
+                    // Nobody circles it there; others keep their distance.
+                    self.plan.skipped.push(self.mission.targets.len());
+                    let moved = Target { position, ..self.mission.targets[target].clone() };
+                    self.mission.targets.push(moved);
+                } else {
+                    self.mission.targets[target].position = position;
+                    changes.gone.push(target);
+                    changes.wanted.retain(|&waiting| waiting != target);
+                    changes.wanted.push(target);
+                }
+            }
+            Event::VehicleFails(vehicle) => {
+                self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
+                self.usable[vehicle] = false;
+                let planned = &mut self.plan.vehicles[vehicle];
+                let done = planned.legs.iter().take_while(|leg| leg.end_time() <= time).count();
+                if done < planned.legs.len() {
+                    changes.wanted.extend(planned.route.drain(done.min(planned.route.len())..));
+                    planned.legs.truncate(done);
+                    planned.lost_at = Some(time);
+                }
+            }
+            Event::VehicleReturns(vehicle) => {
+                self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
+                let planned = &mut self.plan.vehicles[vehicle];
+                let fresh = planned.legs.is_empty();
+                self.known(fresh, "vehicle on its pad", vehicle)?;
+                self.plan.vehicles[vehicle].lost_at = None;
+                self.usable[vehicle] = true;
+                changes.relieved_by = Some(vehicle);
+            }
+        }
+        let problems = self.mission.problems();
+        if problems.is_empty() { Ok(changes) } else { Err(Error::Mission { problems }) }
+    }
+
+    fn known(&self, is_known: bool, what: &'static str, index: usize) -> Result<(), Error> {
+        if is_known {
+            return Ok(());
+        }
+        Err(Error::Mission { problems: vec![Problem::Unknown { what, index }] })
+    }
+
+    /// Whether a target has been circled, or is being circled, at a time.
+    fn is_settled(&self, target: usize, time: f64) -> bool {
+        let legs = self.plan.vehicles.iter().flat_map(|vehicle| &vehicle.legs);
+        legs.filter(|leg| leg.loiter.is_some_and(|loiter| loiter.circle == target))
+            .any(|leg| leg.arrival_time() <= time)
+    }
+
+    /// Finds new routes and flies what has changed.
+    fn refly(&mut self, time: f64, changes: Changes) -> Result<Update, Error> {
+        let orbits = orbits(&self.mission).map_err(of_loiter)?;
+        let airspace = airspace(&self.mission, &orbits);
+        let mut team: Vec<Settled> = (0..self.plan.vehicles.len())
+            .map(|vehicle| Settled::at(&airspace, &self.plan.vehicles[vehicle], time, &changes.gone))
+            .collect();
+        for settled in &mut team {
+            settled.open.retain(|circle| !changes.gone.contains(circle));
+        }
+        let mut waiting = Vec::new();
+        for &target in &changes.wanted {
+            let place = insertion::cheapest(&airspace, &self.model, &self.plan, &team, &self.usable, target);
+            match place {
+                Some(place) => team[place.vehicle].open.insert(place.position, target),
+                None => waiting.push(target),
+            }
+        }
+        if let Some(vehicle) = changes.relieved_by {
+            insertion::relieve(&airspace, &self.model, &self.plan, &mut team, vehicle);
+        }
+        self.plan.circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
+        let mut vehicles = Vec::new();
+        for (vehicle, settled) in team.into_iter().enumerate() {
+            let planned = &self.plan.vehicles[vehicle];
+            if let Some(lost) = planned.lost_at {
+                vehicles.extend((lost == time).then_some(vehicle));
+                continue;
+            }
+            let legs = refly::fly(&airspace, &self.model, vehicle, planned, settled, &changes.gone)?;
+            if let Some(legs) = legs {
+                let planned = &mut self.plan.vehicles[vehicle];
+                planned.route = legs.iter().filter_map(|leg| Some(leg.loiter?.circle)).collect();
+                if planned.legs.first().is_none_or(|leg| leg.start_time > time) {
+                    planned.heading = airspace.heading(planned.pad, &planned.route);
+                }
+                planned.legs = legs;
+                vehicles.push(vehicle);
+            }
+        }
+        self.plan.skipped.sort_unstable();
+        let conflict = self.conflict(time);
+        self.waiting.clone_from(&waiting);
+        let flown = || self.plan.vehicles.iter();
+        self.plan.certificate.makespan = flown().map(|vehicle| vehicle.end_time()).fold(0.0, f64::max);
+        self.plan.certificate.total = flown().map(|vehicle| vehicle.duration()).sum();
+        // The bounds were those of another mission.
+        self.plan.certificate.makespan_lower_bound = 0.0;
+        self.plan.certificate.total_lower_bound = 0.0;
+        Ok(Update { vehicles, waiting, conflict })
+    }
+
+    /// Where airborne vehicles come too close after `time`.
+    fn conflict(&mut self, time: f64) -> Option<Approach> {
+        let approach = in_the_air(&self.plan, &self.mission, |mut fleet| {
+            for airborne in fleet.iter_mut().flatten() {
+                airborne.flight[0] = airborne.flight[0].max(time);
+            }
+            closest_pair(&fleet)
+        })
+        .flatten();
+        self.plan.closest_approach = approach;
+        approach.filter(|approach| approach.distance < self.mission.fleet.separation)
+    }
+}
+
+/// What an event asks for.
+#[derive(Debug, Default)]
+struct Changes {
+    /// Targets that must find a place in a route.
+    wanted: Vec<usize>,
+    /// Targets that lose theirs.
+    gone: Vec<usize>,
+    /// A vehicle that can take targets from others.
+    relieved_by: Option<usize>,
+}
+
+fn of_loiter(source: quad_dynamics::Error) -> Error {
+    Error::Mission { problems: vec![Problem::Loiter { target: 0, source }] }
+}
+
+fn airspace<'a>(mission: &'a Mission, orbits: &'a [crate::circles::Orbit]) -> Airspace<'a> {
+    Airspace {
+        mission,
+        orbits,
+        pilot: Pilot::new(mission, orbits),
+        envelope: envelope(mission, orbits),
+        watch: Watch::new(Options::default(), 0),
+    }
+}

@@ -1,0 +1,158 @@
+//! The legs of a changed route.
+
+use super::settled::{Settled, enters};
+use crate::entry;
+use crate::error::Error;
+use crate::legs::Airspace;
+use crate::plan::{Entry, Leg, Loiter, Transition, VehiclePlan};
+use crate::time_model::TimeModel;
+use crate::transition::hover;
+use quad_dynamics::Motion;
+
+/// Flies a vehicle's open circles from where it is settled; `None` if nothing changes.
+pub(super) fn fly(
+    airspace: &Airspace,
+    model: &TimeModel,
+    vehicle: usize,
+    planned: &VehiclePlan,
+    settled: Settled,
+    gone: &[usize],
+) -> Result<Option<Vec<Leg>>, Error> {
+    let keeps = !settled.open.iter().any(|circle| gone.contains(circle))
+        && planned.route.ends_with(&settled.open)
+        && settled.legs.len() + settled.open.len() == planned.route.len()
+        && (settled.legs.len()..planned.legs.len()).all(|leg| !enters(airspace, planned, leg));
+    if settled.landed || keeps {
+        return Ok(None);
+    }
+    let Settled { mut legs, broken_off, here, mut time, open, .. } = settled;
+    let taken_off = here.is_some();
+    if open.is_empty() && !taken_off {
+        return Ok(Some(Vec::new()));
+    }
+    let mut here = here.unwrap_or_else(|| airspace.take_off(planned.pad, &open));
+    let mut broken_off = broken_off;
+    let entries = entries(airspace, model, planned, (&here, &open), gone);
+    for (&circle, &entry) in open.iter().zip(&entries) {
+        let orbit = &airspace.orbits[circle];
+        let stays = broken_off.is_none() && !gone.contains(&circle);
+        let kept = stays.then(|| unchanged(airspace, planned, &here, (circle, entry), gone)).flatten();
+        let (transition, entry, candidates) = match kept {
+            Some(leg) => (leg.transition.clone(), entry, leg.candidates.clone()),
+            None => {
+                let (transition, found, candidates) = airspace.reach(&here, orbit, entry);
+                let Some(transition) = transition else {
+                    return Err(Error::Leg { vehicle, leg: legs.len(), circle: Some(circle), candidates });
+                };
+                (transition, found, candidates)
+            }
+        };
+        let loiter = Loiter { circle, entry, duration: orbit.circle.duration, length: orbit.loiter.length() };
+        let (start_time, transition) = joined(airspace, planned, &legs, broken_off.take(), time, transition);
+        legs.push(Leg { start_time, transition, loiter: Some(loiter), candidates });
+        time = legs[legs.len() - 1].end_time();
+        here = orbit.exit(entry);
+    }
+    let kept = planned.legs.last().filter(|leg| {
+        let from = planned.legs.len().checked_sub(2).and_then(|before| planned.legs[before].loiter);
+        let same = from.is_some_and(|loiter| {
+            !gone.contains(&loiter.circle) && airspace.orbits[loiter.circle].exit(loiter.entry) == here
+        });
+        same && leg.loiter.is_none()
+            && broken_off.is_none()
+            && !enters(airspace, planned, planned.legs.len() - 1)
+    });
+    let (transition, candidates) = match kept {
+        Some(leg) => (Some(leg.transition.clone()), leg.candidates.clone()),
+        None => airspace.to_pad(&here, planned.pad),
+    };
+    let Some(transition) = transition else {
+        return Err(Error::Leg { vehicle, leg: legs.len(), circle: None, candidates });
+    };
+    let (start_time, transition) = joined(airspace, planned, &legs, broken_off, time, transition);
+    legs.push(Leg { start_time, transition, loiter: None, candidates });
+    Ok(Some(legs))
+}
+
+/// The entries of the open circles: as planned where there is a plan, else the best between their neighbours.
+fn entries(
+    airspace: &Airspace,
+    model: &TimeModel,
+    planned: &VehiclePlan,
+    (here, open): (&Motion, &[usize]),
+    gone: &[usize],
+) -> Vec<Entry> {
+    let old = |circle: usize| {
+        let mut loiters = planned.legs.iter().filter_map(|leg| leg.loiter);
+        // A circle that has moved is entered anew.
+        loiters.find(|loiter| loiter.circle == circle && !gone.contains(&circle)).map(|loiter| loiter.entry)
+    };
+    let sampled = entry::sampled(airspace.mission.transition.entries);
+    let mut from = *here;
+    let mut chosen = Vec::with_capacity(open.len());
+    for (i, &circle) in open.iter().enumerate() {
+        let orbit = &airspace.orbits[circle];
+        let then = match open.get(i + 1) {
+            Some(&next) => old(next).map(|entry| airspace.orbits[next].at(entry)),
+            None => Some(airspace.landing(planned.pad)),
+        };
+        let cost = |entry: &Entry| {
+            model.time(&from, &orbit.at(*entry))
+                + then.map_or(0.0, |then| model.time(&orbit.exit(*entry), &then))
+        };
+        let best = || sampled.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).copied();
+        let entry = old(circle).or_else(best).unwrap_or(sampled[0]);
+        from = orbit.exit(entry);
+        chosen.push(entry);
+    }
+    chosen
+}
+
+/// The planned leg from this very motion to this entry, unless it now enters a safe distance.
+fn unchanged<'a>(
+    airspace: &Airspace,
+    planned: &'a VehiclePlan,
+    here: &Motion,
+    (circle, entry): (usize, Entry),
+    gone: &[usize],
+) -> Option<&'a Leg> {
+    let index = planned
+        .legs
+        .iter()
+        .position(|leg| leg.loiter.is_some_and(|loiter| loiter.circle == circle && loiter.entry == entry))?;
+    let start = match index.checked_sub(1).and_then(|before| planned.legs[before].loiter) {
+        Some(loiter) if gone.contains(&loiter.circle) => return None,
+        Some(loiter) => airspace.orbits[loiter.circle].exit(loiter.entry),
+        None => hover(airspace.mission, planned.pad, planned.heading),
+    };
+    (start == *here && !enters(airspace, planned, index)).then(|| &planned.legs[index])
+}
+
+/// A leg's start and its transition, with what was flown before it was broken off in front.
+fn joined(
+    airspace: &Airspace,
+    planned: &VehiclePlan,
+    legs: &[Leg],
+    broken_off: Option<(f64, Transition)>,
+    time: f64,
+    rest: Transition,
+) -> (f64, Transition) {
+    let Some((start_time, mut whole)) = broken_off else { return (time, rest) };
+    let elapsed = whole.duration;
+    whole.knots.extend(rest.knots.iter().skip(1).map(|knot| knot + elapsed));
+    whole.states.extend(rest.states.into_iter().skip(1));
+    whole.controls.extend(rest.controls);
+    whole.duration = elapsed + rest.duration;
+    whole.iterations += rest.iterations;
+    (whole.status, whole.miss) = (rest.status, rest.miss);
+    whole.primal_residual = rest.primal_residual;
+    whole.dual_residual = rest.dual_residual;
+    let start = match legs.last().and_then(|leg| leg.loiter) {
+        Some(loiter) => airspace.orbits[loiter.circle].exit(loiter.entry),
+        None => hover(airspace.mission, planned.pad, planned.heading),
+    };
+    if let Some(seen) = airspace.pilot.examine(&whole, &start) {
+        (whole.length, whole.max_speed, whole.max_tilt) = (seen.length, seen.max_speed, seen.max_tilt);
+    }
+    (start_time, whole)
+}

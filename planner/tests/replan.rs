@@ -1,0 +1,152 @@
+//! Plans that follow events.
+
+use planner::quad_dynamics::{Vehicle, VehicleParameters};
+use planner::{Entries, Error, Event, Mission, Options, Plan, Problem, Replanner, Target, Tolerances, plan};
+
+/// Two vehicles, four targets.
+fn mission() -> Mission {
+    let positions = [[14.0, 3.0], [26.0, 14.0], [-14.0, 6.0], [-26.0, 18.0]];
+    let vehicle = Vehicle::new(VehicleParameters::survey_450()).unwrap();
+    let mut mission = Mission::new(vehicle, 2, positions.map(Target::at).to_vec());
+    mission.transition.entries = Entries::Sampled(4);
+    mission
+}
+
+fn replanner() -> Replanner {
+    let mission = mission();
+    let plan = plan(&mission, &Options::default()).unwrap();
+    Replanner::new(mission, plan).unwrap()
+}
+
+fn stands(replanner: &Replanner) {
+    let verification = replanner.plan().verify(replanner.mission(), &Tolerances::default());
+    assert!(verification.passed(), "{:?}", verification.failures);
+}
+
+/// Every moment before `time` is flown as it was planned before.
+fn same_past(before: &Plan, after: &Plan, was: &Mission, is: &Mission, time: f64) {
+    for vehicle in 0..before.vehicles.len() {
+        for i in 0..20 {
+            let t = time * f64::from(i) / 20.0;
+            let [a, b] = [before.sample(was, vehicle, t), after.sample(is, vehicle, t)].map(Option::unwrap);
+            let apart = (0..3).map(|axis| (a.position[axis] - b.position[axis]).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-6, "vehicle {vehicle} at {t} s: {apart} m");
+        }
+    }
+}
+
+#[test]
+fn a_target_that_appears_is_circled_and_the_past_stays() {
+    for time in [0.0, 1.0, 4.0, 7.5] {
+        let mut replanner = replanner();
+        let (before, was) = (replanner.plan().clone(), replanner.mission().clone());
+        let update = replanner.apply(time, &Event::TargetAppears(Target::at([4.0, 24.0]))).unwrap();
+        assert_eq!(update.vehicles.len(), 1, "{time}");
+        assert!(update.waiting.is_empty());
+        stands(&replanner);
+        same_past(&before, replanner.plan(), &was, replanner.mission(), time);
+        let routes = replanner.plan().vehicles.iter().flat_map(|vehicle| &vehicle.route);
+        assert_eq!(routes.filter(|&&circle| circle == 4).count(), 1);
+    }
+}
+
+#[test]
+fn a_target_that_vanishes_is_left_out_even_when_a_vehicle_is_on_its_way() {
+    let fresh = replanner();
+    let first = fresh.plan().vehicles[0].legs[0].clone();
+    let target = first.loiter.unwrap().circle;
+    for time in [0.0, 0.3 * first.transition.duration] {
+        let mut replanner = fresh.clone();
+        let (before, was) = (replanner.plan().clone(), replanner.mission().clone());
+        let update = replanner.apply(time, &Event::TargetVanishes(target)).unwrap();
+        assert_eq!(update.vehicles, [0]);
+        assert!(!replanner.plan().vehicles[0].route.contains(&target));
+        stands(&replanner);
+        same_past(&before, replanner.plan(), &was, replanner.mission(), time);
+    }
+    // In the loiter it is too late: the loiter is finished, and counts.
+    let mut replanner = fresh.clone();
+    let update = replanner.apply(first.arrival_time() + 0.5, &Event::TargetVanishes(target)).unwrap();
+    assert!(update.vehicles.is_empty());
+    stands(&replanner);
+}
+
+#[test]
+fn a_target_that_moves_is_circled_where_it_is_then() {
+    let mut replanner = replanner();
+    let last = replanner.plan().vehicles[1].route.last().copied().unwrap();
+    let [x, y] = replanner.mission().targets[last].position;
+    let update = replanner.apply(2.0, &Event::TargetMoves(last, [x + 5.0, y - 4.0])).unwrap();
+    assert!(!update.vehicles.is_empty() && update.waiting.is_empty());
+    assert_eq!(replanner.plan().circles[last].centre, [x + 5.0, y - 4.0]);
+    stands(&replanner);
+    // Once circled it is not circled again.
+    let first = replanner.plan().vehicles[0].legs[0].clone();
+    let circled = first.loiter.unwrap().circle;
+    let routes: Vec<_> = replanner.plan().vehicles.iter().map(|vehicle| vehicle.route.clone()).collect();
+    let [x, y] = replanner.mission().targets[circled].position;
+    replanner.apply(first.end_time() + 0.1, &Event::TargetMoves(circled, [x, y + 60.0])).unwrap();
+    assert_eq!(routes, replanner.plan().vehicles.iter().map(|v| v.route.clone()).collect::<Vec<_>>());
+    stands(&replanner);
+}
+
+#[test]
+fn others_take_over_what_a_lost_vehicle_has_not_completed() {
+    for time in [0.0, 3.0] {
+        let mut replanner = replanner();
+        let update = replanner.apply(time, &Event::VehicleFails(0)).unwrap();
+        assert_eq!(update.vehicles, [0, 1]);
+        assert!(update.waiting.is_empty());
+        assert_eq!(replanner.plan().vehicles[1].route.len(), 4);
+        stands(&replanner);
+        if time == 0.0 {
+            // It comes back before it has flown, and takes some of them again.
+            let update = replanner.apply(1.0, &Event::VehicleReturns(0)).unwrap();
+            assert_eq!(update.vehicles, [0, 1]);
+            stands(&replanner);
+        }
+    }
+}
+
+#[test]
+fn targets_wait_when_nobody_is_left_and_are_not_forgotten() {
+    let mut replanner = replanner();
+    replanner.apply(0.0, &Event::VehicleFails(0)).unwrap();
+    let update = replanner.apply(0.0, &Event::VehicleFails(1)).unwrap();
+    assert_eq!(update.waiting.len(), 4);
+    let update = replanner.apply(1.0, &Event::VehicleReturns(1)).unwrap();
+    assert!(update.waiting.is_empty());
+    stands(&replanner);
+}
+
+#[test]
+fn a_new_target_on_the_way_is_flown_around() {
+    let mut mission = mission();
+    mission.fleet.vehicles = 1;
+    mission.targets = vec![Target::at([60.0, 0.0])];
+    let plan = plan(&mission, &Options::default()).unwrap();
+    let mut replanner = Replanner::new(mission, plan).unwrap();
+    let duration = replanner.plan().vehicles[0].legs[0].transition.duration;
+    let [x, y, _] = replanner.plan().sample(replanner.mission(), 0, 0.6 * duration).unwrap().position;
+    let update = replanner.apply(0.05, &Event::TargetAppears(Target::at([x, y]))).unwrap();
+    assert_eq!(update.vehicles, [0]);
+    assert_eq!(replanner.plan().vehicles[0].route.len(), 2);
+    stands(&replanner);
+}
+
+#[test]
+fn nonsense_is_refused_and_changes_nothing() {
+    let mut replanner = replanner();
+    let before = format!("{:?}", replanner.plan());
+    let nowhere = Event::TargetAppears(Target::at([f64::NAN, 0.0]));
+    for event in [Event::TargetVanishes(4), Event::TargetMoves(9, [0.0; 2]), Event::VehicleFails(2), nowhere]
+    {
+        assert!(matches!(replanner.apply(1.0, &event), Err(Error::Mission { .. })), "{event:?}");
+        assert_eq!(before, format!("{:?}", replanner.plan()));
+    }
+    let mut merged = mission();
+    merged.merge_within = 1.0;
+    let plan = plan(&merged, &Options::default()).unwrap();
+    let refused = Replanner::new(merged, plan);
+    assert!(matches!(refused, Err(Error::Mission { problems }) if problems == [Problem::NotReplannable]));
+}
