@@ -17,7 +17,7 @@ file itself: targets.file = \"trees.kml\".";
 /// What `init` and `import` have in common.
 #[derive(Debug, clap::Args)]
 pub struct StartArguments {
-    /// Where the depot is: LATITUDE,LONGITUDE[,ALTITUDE].
+    /// Where the depot is: LATITUDE,LONGITUDE or LATITUDE,LONGITUDE,ALTITUDE.
     #[arg(long, value_name = "PLACE", value_parser = parse_origin, allow_hyphen_values = true)]
     pub origin: Option<Origin>,
     /// The firmware: ardupilot or px4.

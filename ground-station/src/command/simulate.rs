@@ -147,7 +147,7 @@ fn flown_csv(file: &MissionFile, plan: &Plan, flown: &Flown) -> Result<String, F
     Ok(text)
 }
 
-/// The map with both tracks: planned as always, flown in the colour of the next vehicle but one.
+/// The map with both tracks: the flown ones follow the planned ones like further vehicles, in further colours.
 fn picture(file: &MissionFile, plan: &Plan, team: &[Flown]) -> Result<String, Failure> {
     const RATE: f64 = 20.0;
     let tracks = (0..plan.vehicles.len())
