@@ -37,25 +37,26 @@ class Vehicle:
 
     def take(self, message):
         mav, kind = self.link.mav, message.get_type()
+        self.station = (message.get_srcSystem(), message.get_srcComponent())
         if kind == "COMMAND_LONG":
             mav.command_ack_send(message.command, 0)
             if message.command == 512:
                 mav.home_position_send(0, 0, 0, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
         elif kind == "MISSION_COUNT":
             self.count, self.items = message.count, {}
-            mav.mission_request_int_send(255, 190, 0)
+            mav.mission_request_int_send(*self.station, 0)
         elif kind == "MISSION_ITEM_INT" and self.count is not None:
             self.items[message.seq] = message
             if len(self.items) < self.count:
-                mav.mission_request_int_send(255, 190, len(self.items))
+                mav.mission_request_int_send(*self.station, len(self.items))
             else:
-                mav.mission_ack_send(255, 190, 0)
+                mav.mission_ack_send(*self.station, 0)
         elif kind == "MISSION_REQUEST_LIST":
-            mav.mission_count_send(255, 190, len(self.items))
+            mav.mission_count_send(*self.station, len(self.items))
         elif kind == "MISSION_REQUEST_INT":
             i = self.items[message.seq]
             radius = float(int(i.param3)) if i.command == 18 else i.param3
-            mav.mission_item_int_send(255, 190, i.seq, i.frame, i.command, 0, 1, i.param1, i.param2, radius, i.param4, i.x, i.y, i.z)
+            mav.mission_item_int_send(*self.station, i.seq, i.frame, i.command, 0, 1, i.param1, i.param2, radius, i.param4, i.x, i.y, i.z)
         elif kind == "MISSION_ACK":
             self.read = True
 
