@@ -20,8 +20,28 @@
 //! | solve a neighbour of a solved problem | [`solve_from`] |
 //! | use the result | [`Solution`], [`Status`] |
 //! | check it independently | [`Solution::integrate`], [`integrate`], [`segment_errors`], [`check_derivatives`] |
-//! | see what it leaves between the knots | [`Solution::greatest_violation`] |
+//! | see what it leaves between the knots, or why it failed | [`Solution::greatest_violation`], [`Solution::diagnosis`] |
+//! | free the start time, link phases | [`FreeInitialTime`], [`Linked`] |
+//! | bound the minimum time from below | `least_time_bound` (feature `clarabel`) |
 //! | refine the mesh | [`solve_refined`], [`refined_mesh`] |
+//!
+//! # From the problem to the Newton system
+//! 1. *Transcription.* Segment k of length h has control vectors `u` and end states `x_k, x_{k+1}`. Every transcription is a set of
+//!    residuals `r_i = x_k + h sum_j a_ij f(t_j, X_j, u_j) - X_i = 0` at its points: explicit stages inside the segment
+//!    ([`Transcription::RungeKutta`]; Hairer, Norsett, Wanner 1993), the end alone (trapezoidal), middle and end (Hermite-Simpson;
+//!    Hargraves and Paris 1987, Betts 2010 section 4.5), or Radau's points (Garg et al. 2010).
+//! 2. *Barrier.* Path constraints and boundary inequalities get slacks, and bounds a term `-mu ln(distance)`; mu falls to zero
+//!    (Fiacco and McCormick; Waechter and Biegler 2006, section 2.1).
+//! 3. *Newton's method* on the conditions `grad f + grad c' y - z = 0, c = 0, z distance = mu`. Bound multipliers z and slacks are
+//!    eliminated into the diagonal `Sigma = z / distance`, as are the inner states of a segment: the linearised residuals give
+//!    them as linear functions of `(dx_k, du, dp)`, p the final time. What is left has the form
+//!    `dx_{k+1} = a dx_k + b du + ap dp + c` with a quadratic cost.
+//! 4. *Riccati recursion* over the segments; p and the multipliers of the end conditions form a border of a few columns. If a
+//!    reduced Hessian is not positive definite, a multiple of the identity (in scaled variables) is added and the recursion
+//!    repeated (inertia correction).
+//! 5. *Filter line search* with second-order corrections; restoration by Gauss-Newton steps on the violation alone.
+//!
+//! Static parameters, a free start time and the durations of phases are components of the state whose derivative is zero.
 //!
 //! # Example
 //! A block moves by one metre in the least time with an acceleration of at most 1 m/s^2; the exact answer is 2 s.
@@ -65,13 +85,14 @@
 //!
 //! # What is not
 //! A global minimum; accuracy in continuous time (a coarse mesh can be better than the truth: see [`segment_errors`]); constraints
-//! between the collocation points. `Status::Infeasible` means that no step reduced the violation any further, which for a
+//! between the collocation points (but see [`solve_refined`]). `Status::Infeasible` means that no step reduced the violation any further, which for a
 //! nonconvex problem is no proof. Bounds are relaxed by 1e-8 of their size, and flat directions of the Hessian are damped in
 //! the step, which changes the way to the solution but not the conditions that it meets.
 //!
 //! # How it is tested
-//! Derivatives against automatic ones, costs against analytic switch times and the Riccati equation on generated problems, defects
-//! recomputed from what a solution reports, observed orders of convergence, twenty-five classic problems, fifty
+//! Derivatives against automatic ones and central differences, costs against analytic switch times and the Riccati equation on
+//! generated problems, the conditions of optimality written out by hand from what a solution reports, guesses of time over eight
+//! decades, infeasible problems, observed orders of convergence, twenty-five classic problems, fifty
 //! minimum-time quadcopter transitions for two models, each flown by the integrator.
 //!
 //! # References
@@ -80,7 +101,13 @@
 //! - J. T. Betts, *Practical Methods for Optimal Control and Estimation Using Nonlinear Programming*, SIAM, 2010.
 //! - L. Vanroye, A. Sathya, J. De Schutter, W. Decre, *FATROP: a fast constrained optimal control problem solver for robot
 //!   trajectory optimization and control*, IROS 2023.
+//! - C. R. Hargraves, S. W. Paris, *Direct trajectory optimization using nonlinear programming and collocation*, J. Guidance 10, 1987.
+//! - D. Garg et al., *A unified framework for the numerical solution of optimal control problems using pseudospectral methods*,
+//!   Automatica 46, 2010.
 //! - E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, Springer, 1993.
+//!
+//! # Features
+//! `serde`: (de)serialisation of data types. `clarabel`: lower bounds by conic programming.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
@@ -99,6 +126,8 @@ mod nlp;
 mod options;
 mod problem;
 mod refine;
+#[cfg(feature = "clarabel")]
+mod relaxation;
 mod solution;
 mod solve;
 mod status;
@@ -118,6 +147,8 @@ pub use mesh::Mesh;
 pub use options::Options;
 pub use problem::{Problem, Scales};
 pub use refine::{RefineOptions, Refined, refined_mesh, segment_errors, solve_refined};
+#[cfg(feature = "clarabel")]
+pub use relaxation::{BoundOptions, PointMass, least_time_bound};
 pub use solution::{Multipliers, Solution};
 pub use solve::{Workspace, solve, solve_from, solve_with};
 pub use status::{Iteration, Residuals, Status};
