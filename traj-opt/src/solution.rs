@@ -21,7 +21,7 @@ pub struct Solution<const NX: usize, const NU: usize> {
     /// KKT residuals of the transcribed problem.
     pub residuals: Residuals,
     /// Multipliers.
-    pub multipliers: Multipliers<NX>,
+    pub multipliers: Multipliers<NX, NU>,
     /// One entry an iteration.
     pub log: Vec<Iteration>,
     /// The constraint that is left most violated, relative to its scale, if the solve did not succeed; `None` if it did or no
@@ -40,11 +40,19 @@ pub struct Solution<const NX: usize, const NU: usize> {
 /// Multipliers of the transcribed problem.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct Multipliers<const NX: usize> {
+pub struct Multipliers<const NX: usize, const NU: usize> {
     /// Of the defects, one vector a segment: the costate at the segment's end.
     pub defects: Vec<SVector<f64, NX>>,
     /// Of the boundary constraints, then of the fixed components of the end state in ascending order.
     pub boundary: Vec<f64>,
+    /// Of the path constraints, `n_path` a collocation point; positive where the upper bound holds it back.
+    pub path: Vec<f64>,
+    /// Of the lower and upper bounds on the states at the knots; not negative.
+    pub states: [Vec<SVector<f64, NX>>; 2],
+    /// Of the lower and upper bounds on the control vectors; not negative.
+    pub controls: [Vec<SVector<f64, NU>>; 2],
+    /// Of the lower and upper bound on the final time; not negative.
+    pub final_time: [f64; 2],
 }
 
 impl<const NX: usize, const NU: usize> Solution<NX, NU> {

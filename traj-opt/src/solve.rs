@@ -1,5 +1,6 @@
 //! The entry points of the solver.
 
+use crate::dense::vector;
 use crate::interpolate::Nodes;
 use crate::nlp::interior_point::{Memory, Outcome};
 use crate::nlp::program::Program;
@@ -149,10 +150,7 @@ fn extract<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         objective: memory.values.objective,
         iterations: outcome.iterations,
         residuals: outcome.residuals,
-        multipliers: Multipliers {
-            defects: memory.duals.defect.clone(),
-            boundary: memory.duals.boundary.clone(),
-        },
+        multipliers: multipliers(memory, n_local),
         log: memory.log.clone(),
         diagnosis: if outcome.status.is_success() { None } else { greatest_residual(program, memory) },
         transcription: program.transcription,
@@ -162,6 +160,23 @@ fn extract<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         controls: (0..n * n_local).map(|i| program.control(layout, w, i / n_local, i % n_local)).collect(),
         nodes: nodes(program, memory),
         point: memory.point(),
+    }
+}
+
+fn multipliers<const NX: usize, const NU: usize>(
+    memory: &Memory<NX, NU>,
+    n_local: usize,
+) -> Multipliers<NX, NU> {
+    let (layout, n) = (&memory.layout, memory.layout.n_segments);
+    let sides = [&memory.bounds.z_lower, &memory.bounds.z_upper];
+    Multipliers {
+        defects: memory.duals.defect.clone(),
+        boundary: memory.duals.boundary.clone(),
+        path: memory.duals.path.clone(),
+        states: sides.map(|z| (0..=n).map(|k| vector(z, layout.state(k))).collect()),
+        controls: sides
+            .map(|z| (0..n * n_local).map(|i| vector(z, layout.control(i / n_local, i % n_local))).collect()),
+        final_time: sides.map(|z| z[layout.time]),
     }
 }
 
