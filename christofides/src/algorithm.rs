@@ -1,17 +1,13 @@
 //! Christofides' algorithm, and the whole way from a metric to an improved, bounded tour.
 
 use crate::error::Error;
-use crate::euler::euler_circuit;
 use crate::exact::{exact_path, exact_tour};
 use crate::improve::{Pinned, chained_improve, chained_improve_path};
 use crate::lower_bound::bound;
-use crate::matching::{Matching, Solver};
-use crate::metric::{Geometry, Metric};
-use crate::points::Points;
-use crate::shortcut::shortcut;
-use crate::spanning_tree::spanning_tree;
+use crate::metric::Metric;
 use crate::tour::{Ends, Path, Tour};
 use crate::validate::{validate_finite, validate_promised};
+use crate::workspace::Workspace;
 
 /// Up to this number of vertices the ascent of the lower bound is not cut short: it takes a fraction of a second.
 const PATIENT_UP_TO: usize = 1000;
@@ -73,57 +69,24 @@ pub fn christofides(metric: &impl Metric) -> Result<Tour, Error> {
     from_tree_and_matching(metric)
 }
 
-/// The steps of the algorithm; the bound holds only in a metric, a tour comes out of any symmetric distance.
+/// [`christofides`] in reused storage, where the tour stays until the next call.
+///
+/// # Errors
+/// As [`christofides`].
+///
+/// # Examples
+/// See [`Workspace`].
+pub fn christofides_with<'a>(workspace: &'a mut Workspace, metric: &impl Metric) -> Result<&'a Tour, Error> {
+    validate_promised(metric)?;
+    workspace.run(metric)?;
+    Ok(&workspace.tour)
+}
+
+/// The algorithm without a check of the distances.
 pub(crate) fn from_tree_and_matching(metric: &impl Metric) -> Result<Tour, Error> {
-    let n = metric.len();
-    if n < 4 {
-        return Ok(Tour::measured(metric, (0..n).collect()));
-    }
-    let mut edges = spanning_tree(metric);
-    let odd = odd_vertices(n, &edges);
-    let matching = match_subset(metric, &odd)?;
-    edges.extend(matching.edges().map(|(i, j)| [odd[i], odd[j]]));
-    shortcut(metric, &euler_circuit(n, &edges)?)
-}
-
-fn odd_vertices(n: usize, edges: &[[usize; 2]]) -> Vec<usize> {
-    let mut is_odd = vec![false; n];
-    for &vertex in edges.iter().flatten() {
-        is_odd[vertex] ^= true;
-    }
-    (0..n).filter(|&vertex| is_odd[vertex]).collect()
-}
-
-fn match_subset(metric: &impl Metric, vertices: &[usize]) -> Result<Matching, Error> {
-    let mut solver = Solver::default();
-    match metric.geometry() {
-        Geometry::Planar(points) => {
-            let points: Vec<[f64; 2]> = vertices.iter().map(|&v| points[v]).collect();
-            solver.complete_unchecked(&Points(&points))
-        }
-        Geometry::Spatial(points) => {
-            let points: Vec<[f64; 3]> = vertices.iter().map(|&v| points[v]).collect();
-            solver.complete_unchecked(&Points(&points))
-        }
-        Geometry::Abstract => solver.complete_unchecked(&Subset { metric, vertices }),
-    }
-}
-
-/// Some vertices of a metric.
-struct Subset<'a, M> {
-    metric: &'a M,
-    vertices: &'a [usize],
-}
-
-impl<M: Metric> Metric for Subset<'_, M> {
-    fn len(&self) -> usize {
-        self.vertices.len()
-    }
-
-    #[inline]
-    fn distance(&self, i: usize, j: usize) -> f64 {
-        self.metric.distance(self.vertices[i], self.vertices[j])
-    }
+    let mut workspace = Workspace::default();
+    workspace.run(metric)?;
+    Ok(workspace.tour)
 }
 
 /// A short tour with a lower bound: exact if small, else Christofides' tour improved within the budget of `options`.

@@ -13,21 +13,39 @@ const PLANAR_NEIGHBOURS: usize = 5;
 /// Neighbours where there is no Delaunay triangulation.
 const NEIGHBOURS: usize = 10;
 
-/// Edges among which most of an optimal matching is likely to be found, each once; they contain a perfect matching.
-///
-/// `O(n log n)` for points, `O(n^2)` for other metrics.
-pub(crate) fn matching_candidates(metric: &impl Metric) -> Vec<(u32, u32)> {
-    let n = metric.len();
-    if n <= COMPLETE_UP_TO {
-        return (0..n as u32).flat_map(|i| (i + 1..n as u32).map(move |j| (i, j))).collect();
+/// Up to this number of vertices all pairs are looked at, also of points.
+pub(crate) const DENSE_UP_TO: usize = 150;
+
+/// Storage of candidate edges.
+#[derive(Debug, Default)]
+pub(crate) struct Candidates {
+    edges: Vec<(u32, u32)>,
+    row: Vec<(f64, u32)>,
+}
+
+impl Candidates {
+    /// Edges among which most of an optimal matching is likely to be found, each once; they contain a perfect matching.
+    ///
+    /// `O(n log n)` for points, `O(n^2)` for other metrics.
+    pub fn for_matching(&mut self, metric: &impl Metric) -> &[(u32, u32)] {
+        let n = metric.len();
+        self.edges.clear();
+        if n <= COMPLETE_UP_TO {
+            self.edges.extend((0..n as u32).flat_map(|i| (i + 1..n as u32).map(move |j| (i, j))));
+            return &self.edges;
+        }
+        if n <= DENSE_UP_TO {
+            abstract_neighbours(metric, &mut self.row, &mut self.edges);
+        } else {
+            self.edges.extend(near_edges(metric));
+        }
+        for edge in &mut self.edges {
+            *edge = (edge.0.min(edge.1), edge.0.max(edge.1));
+        }
+        self.edges.sort_unstable();
+        self.edges.dedup();
+        &self.edges
     }
-    let mut edges = near_edges(metric);
-    for edge in &mut edges {
-        *edge = (edge.0.min(edge.1), edge.0.max(edge.1));
-    }
-    edges.sort_unstable();
-    edges.dedup();
-    edges
 }
 
 /// Edges between near vertices that join all of them; some may occur twice.
@@ -43,7 +61,11 @@ pub(crate) fn near_edges(metric: &impl Metric) -> Vec<(u32, u32)> {
             add_neighbours(points, NEIGHBOURS, &mut edges);
             edges
         }
-        Geometry::Abstract => abstract_neighbours(metric),
+        Geometry::Abstract => {
+            let mut edges = Vec::new();
+            abstract_neighbours(metric, &mut Vec::new(), &mut edges);
+            edges
+        }
     }
 }
 
@@ -58,10 +80,9 @@ fn add_neighbours<const D: usize>(points: &[[f64; D]], k: usize, edges: &mut Vec
     edges.extend(tree.order.windows(2).map(|pair| (pair[0], pair[1])));
 }
 
-fn abstract_neighbours(metric: &impl Metric) -> Vec<(u32, u32)> {
+fn abstract_neighbours(metric: &impl Metric, row: &mut Vec<(f64, u32)>, edges: &mut Vec<(u32, u32)>) {
     let n = metric.len();
-    let mut edges: Vec<(u32, u32)> = (1..n as u32).map(|j| (j - 1, j)).collect();
-    let mut row: Vec<(f64, u32)> = Vec::with_capacity(n);
+    edges.extend((1..n as u32).map(|j| (j - 1, j)));
     for i in 0..n {
         row.clear();
         row.extend((0..n).filter(|&j| j != i).map(|j| (metric.distance(i, j), j as u32)));
@@ -69,5 +90,4 @@ fn abstract_neighbours(metric: &impl Metric) -> Vec<(u32, u32)> {
         row.select_nth_unstable_by(k - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         edges.extend(row[..k].iter().map(|&(_, j)| (i as u32, j)));
     }
-    edges
 }

@@ -11,55 +11,90 @@ use crate::error::Error;
 /// # Complexity
 /// `O(n + m)` time and memory.
 pub fn euler_circuit(n: usize, edges: &[[usize; 2]]) -> Result<Vec<usize>, Error> {
-    if let Some(&vertex) = edges.iter().flatten().find(|&&vertex| vertex >= n) {
-        return Err(Error::VertexOutOfRange { vertex, n });
-    }
-    let mut start = vec![0; n + 2];
-    for &vertex in edges.iter().flatten() {
-        start[vertex + 2] += 1;
-    }
-    let n_odd = start.iter().filter(|&&degree| degree % 2 == 1).count();
-    if n_odd > 0 {
-        return Err(Error::OddVertexCount { n: n_odd });
-    }
-    for v in 2..n + 2 {
-        start[v] += start[v - 1];
-    }
-    let mut incident = vec![0; 2 * edges.len()];
-    for (k, &vertex) in edges.iter().flatten().enumerate() {
-        incident[start[vertex + 1]] = k / 2;
-        start[vertex + 1] += 1;
-    }
-    let circuit = walk(n, edges, &start, &incident);
-    check_connected(n, &circuit)?;
-    Ok(circuit)
+    let mut walk = Walk::default();
+    walk.find(n, edges)?;
+    Ok(walk.circuit)
 }
 
-/// Hierholzer's walk with an explicit stack: a vertex is put out when no unused edge is left at it.
-fn walk(n: usize, edges: &[[usize; 2]], start: &[usize], incident: &[usize]) -> Vec<usize> {
-    let mut next = start.to_vec();
-    let mut used = vec![false; edges.len()];
-    let mut circuit = Vec::with_capacity(edges.len() + 1);
-    let mut stack = Vec::with_capacity(edges.len() + 1);
-    stack.extend((n > 0).then_some(0));
-    while let Some(&vertex) = stack.last() {
-        while next[vertex] < start[vertex + 1] && used[incident[next[vertex]]] {
-            next[vertex] += 1;
+/// A closed walk and the storage of its search.
+#[derive(Debug, Default)]
+pub(crate) struct Walk {
+    start: Vec<usize>,
+    incident: Vec<usize>,
+    next: Vec<usize>,
+    is_used: Vec<bool>,
+    stack: Vec<usize>,
+    circuit: Vec<usize>,
+}
+
+impl Walk {
+    /// See [`euler_circuit`].
+    pub fn find(&mut self, n: usize, edges: &[[usize; 2]]) -> Result<(), Error> {
+        if let Some(&vertex) = edges.iter().flatten().find(|&&vertex| vertex >= n) {
+            return Err(Error::VertexOutOfRange { vertex, n });
         }
-        if next[vertex] == start[vertex + 1] {
-            stack.pop();
-            circuit.push(vertex);
-        } else {
-            let edge = incident[next[vertex]];
-            used[edge] = true;
-            let [u, v] = edges[edge];
-            stack.push(if u == vertex { v } else { u });
+        self.list_incident(n, edges)?;
+        self.walk(n, edges);
+        if self.circuit.len() == edges.len() && (0..n).all(|v| self.start[v] < self.start[v + 1]) {
+            return Ok(()); // every edge used, and one at every vertex
+        }
+        check_connected(n, &self.circuit)
+    }
+
+    /// The walk without its last vertex.
+    pub fn circuit(&self) -> &[usize] {
+        &self.circuit
+    }
+
+    fn list_incident(&mut self, n: usize, edges: &[[usize; 2]]) -> Result<(), Error> {
+        let start = &mut self.start;
+        start.clear();
+        start.resize(n + 2, 0);
+        for &vertex in edges.iter().flatten() {
+            start[vertex + 2] += 1;
+        }
+        let n_odd = start.iter().filter(|&&degree| degree % 2 == 1).count();
+        if n_odd > 0 {
+            return Err(Error::OddVertexCount { n: n_odd });
+        }
+        for v in 2..n + 2 {
+            start[v] += start[v - 1];
+        }
+        self.incident.resize(2 * edges.len(), 0);
+        for (k, &vertex) in edges.iter().flatten().enumerate() {
+            self.incident[start[vertex + 1]] = k / 2;
+            start[vertex + 1] += 1;
+        }
+        Ok(())
+    }
+
+    /// Hierholzer's walk with an explicit stack: a vertex is put out when no unused edge is left at it.
+    fn walk(&mut self, n: usize, edges: &[[usize; 2]]) {
+        let Walk { start, incident, next, is_used, stack, circuit } = self;
+        next.clone_from(start);
+        is_used.clear();
+        is_used.resize(edges.len(), false);
+        circuit.clear();
+        stack.clear();
+        stack.extend((n > 0).then_some(0));
+        while let Some(&vertex) = stack.last() {
+            while next[vertex] < start[vertex + 1] && is_used[incident[next[vertex]]] {
+                next[vertex] += 1;
+            }
+            if next[vertex] == start[vertex + 1] {
+                stack.pop();
+                circuit.push(vertex);
+            } else {
+                let edge = incident[next[vertex]];
+                is_used[edge] = true;
+                let [u, v] = edges[edge];
+                stack.push(if u == vertex { v } else { u });
+            }
+        }
+        if circuit.len() > 1 {
+            circuit.pop();
         }
     }
-    if circuit.len() > 1 {
-        circuit.pop();
-    }
-    circuit
 }
 
 fn check_connected(n: usize, circuit: &[usize]) -> Result<(), Error> {

@@ -23,7 +23,7 @@
 //!
 //! | To get | call | cost |
 //! |---|---|---|
-//! | a tour of at most 3/2 optimum | [`christofides`] | `O(n log n)` typically for points, `O(n^2)` and more otherwise |
+//! | a tour of at most 3/2 optimum | [`christofides`], [`christofides_with`] | `O(n log n)` typically for points, `O(n^2)` and more otherwise |
 //! | a short tour with its gap | [`solve`] | by the budget in [`Options`] |
 //! | a short open path | [`solve_path`] | by the budget |
 //! | a proven optimum | [`exact_tour`], [`exact_path`] | some 10 ms for 40 points of the plane |
@@ -107,8 +107,9 @@ mod shortcut;
 mod spanning_tree;
 mod tour;
 mod validate;
+mod workspace;
 
-pub use algorithm::{Options, christofides, solve, solve_path};
+pub use algorithm::{Options, christofides, christofides_with, solve, solve_path};
 pub use error::Error;
 pub use euler::euler_circuit;
 pub use exact::{exact_path, exact_tour};
@@ -122,3 +123,4 @@ pub use shortcut::shortcut;
 pub use spanning_tree::minimum_spanning_tree;
 pub use tour::{Ends, Path, Tour};
 pub use validate::validate;
+pub use workspace::Workspace;

@@ -15,55 +15,66 @@ use crate::tour::Tour;
 /// # Complexity
 /// `O(length of the walk)`.
 pub fn shortcut(metric: &impl Metric, walk: &[usize]) -> Result<Tour, Error> {
-    let n = metric.len();
-    let mut visits: Vec<(usize, usize)> = Vec::with_capacity(walk.len());
-    for (position, &vertex) in walk.iter().enumerate() {
-        if vertex >= n {
-            return Err(Error::VertexOutOfRange { vertex, n });
-        }
-        visits.push((vertex, position));
-    }
-    visits.sort_unstable();
-    let mut ring = Ring::new(walk);
-    let mut expected = 0;
-    for group in visits.chunk_by(|a, b| a.0 == b.0) {
-        if group[0].0 != expected {
-            break;
-        }
-        expected += 1;
-        ring.keep_one(metric, group);
-    }
-    if expected < n {
-        return Err(Error::NotAPermutation { vertex: expected });
-    }
-    Ok(Tour::measured(metric, ring.into_order(visits.first().map_or(0, |visit| visit.1))))
+    let mut ring = Ring::default();
+    ring.shortcut(metric, walk)?;
+    Ok(Tour::measured(metric, ring.order(walk).collect()))
 }
 
 /// The walk as a doubly linked list of positions.
-struct Ring<'a> {
-    walk: &'a [usize],
+#[derive(Debug, Default)]
+pub(crate) struct Ring {
+    visits: Vec<(usize, usize)>,
     next: Vec<usize>,
     previous: Vec<usize>,
     is_removed: Vec<bool>,
 }
 
-impl<'a> Ring<'a> {
-    fn new(walk: &'a [usize]) -> Self {
-        let len = walk.len();
-        let next = (1..len).chain((len > 0).then_some(0)).collect();
-        let previous = (len > 0).then(|| len - 1).into_iter().chain(0..len.saturating_sub(1)).collect();
-        Ring { walk, next, previous, is_removed: vec![false; len] }
+impl Ring {
+    /// See [`shortcut`].
+    pub fn shortcut(&mut self, metric: &impl Metric, walk: &[usize]) -> Result<(), Error> {
+        self.close(metric.len(), walk)?;
+        let visits = std::mem::take(&mut self.visits);
+        let mut expected = 0;
+        for group in visits.chunk_by(|a, b| a.0 == b.0) {
+            if group[0].0 != expected {
+                break;
+            }
+            expected += 1;
+            self.keep_one(metric, walk, group);
+        }
+        self.visits = visits;
+        if expected < metric.len() { Err(Error::NotAPermutation { vertex: expected }) } else { Ok(()) }
     }
 
-    fn keep_one(&mut self, metric: &impl Metric, visits: &[(usize, usize)]) {
+    /// Links every position with the next one, the last with the first.
+    fn close(&mut self, n: usize, walk: &[usize]) -> Result<(), Error> {
+        let len = walk.len();
+        self.visits.clear();
+        for (position, &vertex) in walk.iter().enumerate() {
+            if vertex >= n {
+                return Err(Error::VertexOutOfRange { vertex, n });
+            }
+            self.visits.push((vertex, position));
+        }
+        self.visits.sort_unstable();
+        self.next.clear();
+        self.next.extend((1..len).chain((len > 0).then_some(0)));
+        self.previous.clear();
+        self.previous.extend((len > 0).then(|| len - 1).into_iter().chain(0..len.saturating_sub(1)));
+        self.is_removed.clear();
+        self.is_removed.resize(len, false);
+        Ok(())
+    }
+
+    fn keep_one(&mut self, metric: &impl Metric, walk: &[usize], visits: &[(usize, usize)]) {
         if visits.len() == 1 {
             return;
         }
         let mut kept = visits[0].1;
         let mut least = f64::INFINITY;
         for &(vertex, position) in visits {
-            let before = self.walk[self.previous[position]];
-            let after = self.walk[self.next[position]];
+            let before = walk[self.previous[position]];
+            let after = walk[self.next[position]];
             let saving = metric.distance(before, vertex) + metric.distance(vertex, after)
                 - metric.distance(before, after);
             if saving < least {
@@ -78,9 +89,10 @@ impl<'a> Ring<'a> {
         }
     }
 
-    fn into_order(self, start: usize) -> Vec<usize> {
-        let remaining =
-            (start..self.walk.len()).chain(0..start).filter(|&position| !self.is_removed[position]);
-        remaining.map(|position| self.walk[position]).collect()
+    /// The remaining visits, from the first one of vertex 0 on.
+    pub fn order<'a>(&'a self, walk: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
+        let start = self.visits.first().map_or(0, |visit| visit.1);
+        let positions = (start..walk.len()).chain(0..start);
+        positions.filter(|&position| !self.is_removed[position]).map(|position| walk[position])
     }
 }

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::metric::Metric;
 
 /// A cyclic tour: every vertex once, the closing edge implied.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
 pub struct Tour {
@@ -121,6 +121,16 @@ macro_rules! ordered {
             }
         }
     };
+}
+
+impl Tour {
+    /// Takes over an order of all vertices into the storage of this one.
+    pub(crate) fn replace(&mut self, metric: &impl Metric, order: impl Iterator<Item = usize>) {
+        self.order.clear();
+        self.order.extend(order);
+        self.cost = tour_edges(&self.order).map(|(i, j)| metric.distance(i, j)).sum();
+        self.lower_bound = None;
+    }
 }
 
 ordered!(Tour, tour_edges);

@@ -30,8 +30,8 @@ impl Forest {
             index[node as usize] = k as u32;
         }
         let blossom = |&node: &u32| {
-            let Node { dual, parent, cycle, .. } = &self.nodes[node as usize];
-            let children = cycle.iter().map(|&(child, _)| child);
+            let Node { dual, parent, .. } = &self.nodes[node as usize];
+            let children = self.children(node);
             Blossom {
                 dual: scale.real(*dual),
                 parent: (*parent != NONE).then(|| index[*parent as usize] as usize),

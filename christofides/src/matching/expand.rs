@@ -3,9 +3,17 @@
 use super::forest::{Forest, Group, Label, Link, NONE};
 
 impl Forest {
+    /// The children of a blossom, each with the edge to the next, in storage that is to be given back.
+    fn take_cycle(&mut self, blossom: u32) -> Vec<(u32, Link)> {
+        let mut cycle = std::mem::take(&mut self.cycle);
+        cycle.clear();
+        cycle.extend(self.children(blossom).map(|child| (child, self.nodes[child as usize].onward)));
+        cycle
+    }
+
     /// Makes the children top-level nodes, all free, in the groups they had; returns the cycle.
     fn open(&mut self, blossom: u32) -> Vec<(u32, Link)> {
-        let cycle = std::mem::take(&mut self.nodes[blossom as usize].cycle);
+        let cycle = self.take_cycle(blossom);
         let shared = self.nodes[blossom as usize].group;
         self.relabel(blossom, Label::Free);
         for &(child, _) in &cycle {
@@ -77,6 +85,7 @@ impl Forest {
                 Label::Plus => self.schedule_all(child),
             }
         }
+        self.cycle = cycle;
     }
 
     /// Expands a blossom outside any tree; the children are matched in pairs except the one around `base`, which takes
@@ -87,6 +96,7 @@ impl Forest {
         let cycle = self.open(blossom);
         self.pair_around(&cycle, child);
         self.nodes[child as usize].mate = mate;
+        self.cycle = cycle;
         self.recycled.push(blossom);
         child
     }
@@ -105,7 +115,7 @@ impl Forest {
     ///
     /// Blossoms stay in place, so that their duals can be read.
     pub fn match_inside(&mut self) {
-        let mut stack: Vec<u32> = Vec::new();
+        let mut stack = std::mem::take(&mut self.scratch);
         for node in self.n_vertices() as u32..self.nodes.len() as u32 {
             let record = &self.nodes[node as usize];
             if record.size > 0 && record.parent == NONE {
@@ -115,11 +125,12 @@ impl Forest {
         while let Some(blossom) = stack.pop() {
             let mate = self.nodes[blossom as usize].mate;
             let base = self.child_around(blossom, mate.inner);
-            let cycle = std::mem::take(&mut self.nodes[blossom as usize].cycle);
+            let cycle = self.take_cycle(blossom);
             self.pair_around(&cycle, base);
             self.nodes[base as usize].mate = mate;
             stack.extend(cycle.iter().map(|&(child, _)| child).filter(|&child| self.is_blossom(child)));
-            self.nodes[blossom as usize].cycle = cycle;
+            self.cycle = cycle;
         }
+        self.scratch = stack;
     }
 }

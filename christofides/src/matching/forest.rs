@@ -47,7 +47,7 @@ impl Link {
 }
 
 /// A vertex or a blossom. Vertices are nodes `0..n`, blossoms follow.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     /// The dual when the label last changed.
     pub dual: i64,
@@ -73,8 +73,12 @@ pub(crate) struct Node {
     pub size: u32,
     /// Mark of the search for a common ancestor.
     pub stamp: u32,
-    /// Children in cyclic order, each with the edge that joins it to the next; empty for vertices.
-    pub cycle: Vec<(u32, Link)>,
+    /// First child of a blossom; the children form a cycle.
+    pub first_child: u32,
+    /// The next child of the same blossom, absent for the last one.
+    pub next_child: u32,
+    /// The edge to the next child of the same blossom, for the last one to the first.
+    pub onward: Link,
 }
 
 impl Node {
@@ -92,7 +96,9 @@ impl Node {
             group: first,
             size,
             stamp: 0,
-            cycle: Vec::new(),
+            first_child: NONE,
+            next_child: NONE,
+            onward: Link::ABSENT,
         }
     }
 }
@@ -134,6 +140,8 @@ pub(crate) struct Forest {
     pub n_trees: usize,
     pub stamp: u32,
     pub scratch: Vec<u32>,
+    /// Storage of the cycle that is shrunk or expanded: children, each with the edge that joins it to the next.
+    pub cycle: Vec<(u32, Link)>,
 }
 
 impl Forest {
@@ -228,6 +236,16 @@ impl Forest {
             let vertex = next?;
             next = (vertex != last).then(|| self.next_vertex[vertex as usize]);
             Some(vertex)
+        })
+    }
+
+    /// The children of a blossom in cyclic order; none for a vertex.
+    pub fn children(&self, blossom: u32) -> impl Iterator<Item = u32> + '_ {
+        let mut next = self.nodes[blossom as usize].first_child;
+        std::iter::from_fn(move || {
+            let child = (next != NONE).then_some(next)?;
+            next = self.nodes[child as usize].next_child;
+            Some(child)
         })
     }
 

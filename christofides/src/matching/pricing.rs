@@ -16,6 +16,9 @@ const PER_VERTEX: usize = 6;
 /// Up to this number of vertices of a blossom all pairs are looked at.
 const ALL_PAIRS_UP_TO: usize = 24;
 
+/// Up to this number of vertices pairs are enumerated rather than searched for in a k-d tree.
+const DENSE_UP_TO: usize = crate::candidates::DENSE_UP_TO;
+
 /// A violated edge and its weight.
 pub(crate) type Violation = (u32, u32, i64);
 
@@ -30,7 +33,7 @@ pub(crate) enum Index {
 impl Index {
     pub fn new(metric: &impl Metric) -> Self {
         match metric.geometry() {
-            _ if metric.len() <= ALL_PAIRS_UP_TO => Index::Abstract,
+            _ if metric.len() <= DENSE_UP_TO => Index::Abstract,
             Geometry::Planar(points) => Index::Planar(KdTree::new(points)),
             Geometry::Spatial(points) => Index::Spatial(KdTree::new(points)),
             Geometry::Abstract => Index::Abstract,
@@ -38,21 +41,9 @@ impl Index {
     }
 }
 
-/// All violated edges, at most [`PER_VERTEX`] of a vertex in a blossom.
-pub(crate) fn violated(forest: &Forest, metric: &impl Metric, scale: Scale, index: &Index) -> Vec<Violation> {
-    let mut pricing = Pricing::new(forest, metric, scale);
-    match index {
-        Index::Planar(tree) => pricing.search(tree),
-        Index::Spatial(tree) => pricing.search(tree),
-        Index::Abstract => pricing.search_all_pairs(),
-    }
-    pricing.found
-}
-
-struct Pricing<'a, M> {
-    forest: &'a Forest,
-    metric: &'a M,
-    scale: Scale,
+/// Storage of the search.
+#[derive(Debug, Default)]
+pub(crate) struct Prices {
     /// Vertices in an order in which every blossom is a range.
     sequence: Vec<u32>,
     /// Where each vertex is in it.
@@ -60,65 +51,96 @@ struct Pricing<'a, M> {
     /// Full radii.
     radius: Vec<i64>,
     row: Vec<(i64, Violation)>,
-    found: Vec<Violation>,
+    blossoms: Vec<(u32, i64)>,
+    /// The violated edges.
+    pub found: Vec<Violation>,
 }
 
-impl<'a, M: Metric> Pricing<'a, M> {
-    fn new(forest: &'a Forest, metric: &'a M, scale: Scale) -> Self {
+/// Finds all violated edges, at most [`PER_VERTEX`] of a vertex in a blossom.
+pub(crate) fn find_violated(
+    forest: &Forest,
+    metric: &impl Metric,
+    scale: Scale,
+    index: &Index,
+    prices: &mut Prices,
+) {
+    prices.fill(forest);
+    let mut pricing = Pricing { forest, metric, scale, prices };
+    match index {
+        Index::Planar(tree) => pricing.search(tree),
+        Index::Spatial(tree) => pricing.search(tree),
+        Index::Abstract => pricing.search_all_pairs(),
+    }
+}
+
+impl Prices {
+    fn fill(&mut self, forest: &Forest) {
         let n = forest.n_vertices();
-        let mut sequence = Vec::with_capacity(n);
+        self.found.clear();
+        self.sequence.clear();
         for vertex in 0..n as u32 {
             let top = forest.top(vertex);
             if forest.nodes[top as usize].first == vertex {
-                sequence.extend(forest.vertices(top));
+                self.sequence.extend(forest.vertices(top));
             }
         }
-        let mut place = vec![0; n];
-        for (k, &vertex) in sequence.iter().enumerate() {
-            place[vertex as usize] = k as u32;
+        self.place.resize(n, 0);
+        for (k, &vertex) in self.sequence.iter().enumerate() {
+            self.place[vertex as usize] = k as u32;
         }
-        let radius = (0..n as u32).map(|vertex| forest.radius(vertex)).collect();
-        Pricing { forest, metric, scale, sequence, place, radius, row: Vec::new(), found: Vec::new() }
-    }
-
-    fn range(&self, node: u32) -> Range<u32> {
-        let first = self.place[self.forest.nodes[node as usize].first as usize];
-        first..first + self.forest.nodes[node as usize].size
+        self.radius.clear();
+        self.radius.extend((0..n as u32).map(|vertex| forest.radius(vertex)));
+        self.list_blossoms(forest);
     }
 
     /// All blossoms, outer ones first, each with the sum of the duals of itself and those around it.
-    fn blossoms(&self) -> Vec<(u32, i64)> {
-        let nodes = &self.forest.nodes;
-        let n = self.forest.n_vertices();
+    fn list_blossoms(&mut self, forest: &Forest) {
+        let nodes = &forest.nodes;
         let is_top = |node: &usize| nodes[*node].size > 0 && nodes[*node].parent == NONE;
-        let mut list: Vec<(u32, i64)> =
-            (n..nodes.len()).filter(is_top).map(|node| (node as u32, nodes[node].dual)).collect();
+        let list = &mut self.blossoms;
+        list.clear();
+        list.extend(
+            (forest.n_vertices()..nodes.len()).filter(is_top).map(|node| (node as u32, nodes[node].dual)),
+        );
         let mut next = 0;
         while next < list.len() {
             let (blossom, around) = list[next];
-            for &(child, _) in nodes[blossom as usize].cycle.iter().filter(|c| self.forest.is_blossom(c.0)) {
+            for child in forest.children(blossom).filter(|&child| forest.is_blossom(child)) {
                 list.push((child, around + nodes[child as usize].dual));
             }
             next += 1;
         }
-        list
+    }
+}
+
+struct Pricing<'a, M> {
+    forest: &'a Forest,
+    metric: &'a M,
+    scale: Scale,
+    prices: &'a mut Prices,
+}
+
+impl<M: Metric> Pricing<'_, M> {
+    fn range(&self, node: u32) -> Range<u32> {
+        let first = self.prices.place[self.forest.nodes[node as usize].first as usize];
+        first..first + self.forest.nodes[node as usize].size
     }
 
     #[inline]
     fn check(&mut self, u: u32, v: u32, around: i64) {
         let weight = self.scale.weight(self.metric.distance(u as usize, v as usize));
-        let slack = weight - self.radius[u as usize] - self.radius[v as usize] + 2 * around;
+        let slack = weight - self.prices.radius[u as usize] - self.prices.radius[v as usize] + 2 * around;
         if slack < 0 {
-            self.row.push((slack, (u, v, weight)));
+            self.prices.row.push((slack, (u, v, weight)));
         }
     }
 
     fn keep_worst(&mut self) {
-        if self.row.len() > PER_VERTEX {
-            self.row.select_nth_unstable(PER_VERTEX);
-            self.row.truncate(PER_VERTEX);
+        if self.prices.row.len() > PER_VERTEX {
+            self.prices.row.select_nth_unstable(PER_VERTEX);
+            self.prices.row.truncate(PER_VERTEX);
         }
-        self.found.extend(self.row.drain(..).map(|(_, violation)| violation));
+        self.prices.found.extend(self.prices.row.drain(..).map(|(_, violation)| violation));
     }
 
     fn search_all_pairs(&mut self) {
@@ -132,7 +154,8 @@ impl<'a, M: Metric> Pricing<'a, M> {
             }
             self.keep_worst();
         }
-        for (blossom, around) in self.blossoms() {
+        for k in 0..self.prices.blossoms.len() {
+            let (blossom, around) = self.prices.blossoms[k];
             self.all_pairs_in(blossom, around);
         }
     }
@@ -141,11 +164,15 @@ impl<'a, M: Metric> Pricing<'a, M> {
     fn all_pairs_in(&mut self, blossom: u32, around: i64) {
         let end = self.range(blossom).end;
         let forest = self.forest;
-        for &(child, _) in &forest.nodes[blossom as usize].cycle {
+        for child in forest.children(blossom) {
             let range = self.range(child);
             for k in range.clone() {
                 for other in range.end..end {
-                    self.check(self.sequence[k as usize], self.sequence[other as usize], around);
+                    self.check(
+                        self.prices.sequence[k as usize],
+                        self.prices.sequence[other as usize],
+                        around,
+                    );
                 }
                 self.keep_worst();
             }
@@ -154,7 +181,7 @@ impl<'a, M: Metric> Pricing<'a, M> {
 
     fn search<const D: usize>(&mut self, tree: &KdTree<D>) {
         let boxes = self.boxes(tree);
-        let everything = 0..self.sequence.len() as u32;
+        let everything = 0..self.prices.sequence.len() as u32;
         for position in 0..tree.order.len() {
             let own = self.range(self.forest.top(tree.order[position]));
             let query =
@@ -165,7 +192,8 @@ impl<'a, M: Metric> Pricing<'a, M> {
         for (position, &vertex) in tree.order.iter().enumerate() {
             position_of[vertex as usize] = position;
         }
-        for (blossom, around) in self.blossoms() {
+        for k in 0..self.prices.blossoms.len() {
+            let (blossom, around) = self.prices.blossoms[k];
             let within = self.range(blossom);
             if within.len() <= ALL_PAIRS_UP_TO {
                 self.all_pairs_in(blossom, around);
@@ -173,12 +201,11 @@ impl<'a, M: Metric> Pricing<'a, M> {
             }
             // Of every pair at least one vertex is not in the largest child.
             let forest = self.forest;
-            let cycle = &forest.nodes[blossom as usize].cycle;
-            let largest = cycle.iter().map(|c| c.0).max_by_key(|&child| forest.nodes[child as usize].size);
-            for child in cycle.iter().map(|c| c.0).filter(|&child| Some(child) != largest) {
+            let largest = forest.children(blossom).max_by_key(|&child| forest.nodes[child as usize].size);
+            for child in forest.children(blossom).filter(|&child| Some(child) != largest) {
                 let own = self.range(child);
                 for k in own.clone() {
-                    let position = position_of[self.sequence[k as usize] as usize];
+                    let position = position_of[self.prices.sequence[k as usize] as usize];
                     let query = Query { position, own: own.clone(), within: within.clone(), around, from: 0 };
                     self.query(tree, &boxes, &query);
                 }
@@ -197,8 +224,8 @@ impl<'a, M: Metric> Pricing<'a, M> {
                 summary = boxes[node.left as usize].join(boxes[node.left as usize + 1]);
             } else {
                 for &vertex in &tree.order[node.range()] {
-                    let place = self.place[vertex as usize];
-                    let radius = self.scale.real(self.radius[vertex as usize]);
+                    let place = self.prices.place[vertex as usize];
+                    let radius = self.scale.real(self.prices.radius[vertex as usize]);
                     summary = summary.join(Summary { radius, low: place, high: place });
                 }
             }
@@ -212,7 +239,7 @@ impl<'a, M: Metric> Pricing<'a, M> {
         let u = tree.order[query.position];
         let point = &tree.points[query.position];
         // One unit more than the radii: rounding of a weight cannot hide a violation.
-        let radius = self.scale.real(self.radius[u as usize] - 2 * query.around + UNIT);
+        let radius = self.scale.real(self.prices.radius[u as usize] - 2 * query.around + UNIT);
         let Query { own, within, .. } = query;
         let mut stack = [0_u32; 64];
         let mut len = 1;
@@ -237,7 +264,7 @@ impl<'a, M: Metric> Pricing<'a, M> {
             }
             for position in node.range() {
                 let v = tree.order[position];
-                let place = self.place[v as usize];
+                let place = self.prices.place[v as usize];
                 let is_far = squared_distance(point, &tree.points[position]) > reach * reach;
                 if !is_far
                     && position >= query.from as usize

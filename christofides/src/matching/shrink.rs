@@ -11,16 +11,15 @@ impl Forest {
         let (tree, mate) = (self.nodes[root as usize].tree, self.nodes[root as usize].mate);
         self.form(blossom, &cycle);
         self.nodes[blossom as usize].mate = mate;
-        self.nodes[blossom as usize].cycle = cycle;
         self.enlist(blossom, tree);
         // Even positions of the cycle were plus: their events stand. The others have none yet.
-        for k in 0..self.nodes[blossom as usize].cycle.len() {
-            let (child, _) = self.nodes[blossom as usize].cycle[k];
+        for &(child, _) in &cycle {
             if self.nodes[child as usize].stamp == NONE {
                 self.nodes[child as usize].stamp = 0;
                 self.schedule_all(child);
             }
         }
+        self.cycle = cycle;
     }
 
     /// The plus node two levels nearer to the root.
@@ -50,7 +49,8 @@ impl Forest {
 
     /// The cycle from the common ancestor down to `near`, over `edge` to `far`, and up again.
     fn collect_cycle(&mut self, near: u32, far: u32, edge: Link, root: u32) -> Vec<(u32, Link)> {
-        let mut cycle = Vec::new();
+        let mut cycle = std::mem::take(&mut self.cycle);
+        cycle.clear();
         let mut node = near;
         let mut onward = edge;
         while node != root {
@@ -105,20 +105,23 @@ impl Forest {
         let group = self.nodes[largest as usize].group;
         let mut size = 0;
         let mut last = NONE;
-        for &(child, _) in cycle {
+        for (k, &(child, onward)) in cycle.iter().enumerate() {
             if child != largest {
                 self.regroup(child, group);
             }
-            self.nodes[child as usize].parent = blossom;
-            let record = &self.nodes[child as usize];
+            let next_child = cycle.get(k + 1).map_or(NONE, |&(next, _)| next);
+            let record = &mut self.nodes[child as usize];
+            (record.parent, record.next_child, record.onward) = (blossom, next_child, onward);
             size += record.size;
             if last != NONE {
                 self.next_vertex[last as usize] = record.first;
             }
             last = record.last;
         }
-        let first = self.nodes[cycle[0].0 as usize].first;
+        let first_child = cycle[0].0;
+        let first = self.nodes[first_child as usize].first;
         self.groups[group as usize].node = blossom;
-        self.nodes[blossom as usize] = Node { last, group, size, since: self.now, ..Node::new(first, size) };
+        self.nodes[blossom as usize] =
+            Node { last, group, first_child, since: self.now, ..Node::new(first, size) };
     }
 }

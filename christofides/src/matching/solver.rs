@@ -2,10 +2,10 @@
 
 use super::blossoms::Blossom;
 use super::forest::Forest;
-use super::pricing::{Index, violated};
+use super::pricing::{Index, Prices, find_violated};
 use super::quantise::Scale;
 use super::search::Exposed;
-use crate::candidates::matching_candidates;
+use crate::candidates::Candidates;
 use crate::error::Error;
 use crate::metric::Metric;
 use crate::validate::validate_finite;
@@ -83,6 +83,8 @@ pub fn sparse_min_weight_perfect_matching(
 pub struct Solver {
     forest: Forest,
     edges: Vec<(u32, u32, i64)>,
+    candidates: Candidates,
+    prices: Prices,
 }
 
 impl Solver {
@@ -95,12 +97,30 @@ impl Solver {
         self.complete_unchecked(metric)
     }
 
-    pub(crate) fn complete_unchecked(&mut self, metric: &impl Metric) -> Result<Matching, Error> {
+    fn complete_unchecked(&mut self, metric: &impl Metric) -> Result<Matching, Error> {
+        let scale = self.search(metric)?;
+        let mut matching = self.export(scale);
+        matching.weight = matching.edges().map(|(u, v)| metric.distance(u, v)).sum();
+        Ok(matching)
+    }
+
+    /// The matched edges alone, without a check of the distances.
+    pub(crate) fn pairs_unchecked(
+        &mut self,
+        metric: &impl Metric,
+    ) -> Result<impl Iterator<Item = (usize, usize)> + '_, Error> {
+        self.search(metric)?;
+        self.forest.match_inside();
+        let mate = |v: usize| self.forest.nodes[v].mate.outer as usize;
+        Ok((0..metric.len()).map(move |v| (v, mate(v))).filter(|&(u, v)| u < v))
+    }
+
+    fn search(&mut self, metric: &impl Metric) -> Result<Scale, Error> {
         let n = metric.len();
         if n % 2 == 1 {
             return Err(Error::OddVertexCount { n });
         }
-        let candidates = matching_candidates(metric);
+        let candidates = self.candidates.for_matching(metric);
         let length = |&(u, v): &(u32, u32)| metric.distance(u as usize, v as usize);
         let scale = Scale::new(candidates.iter().map(length).fold(0.0, f64::max));
         self.edges.clear();
@@ -110,17 +130,14 @@ impl Solver {
         let index = Index::new(metric);
         loop {
             self.forest.run().map_err(|Exposed(exposed)| Error::NoPerfectMatching { exposed })?;
-            let violated = violated(&self.forest, metric, scale, &index);
-            if violated.is_empty() {
-                break;
+            find_violated(&self.forest, metric, scale, &index, &mut self.prices);
+            if self.prices.found.is_empty() {
+                return Ok(scale);
             }
-            self.edges.extend(&violated);
+            self.edges.extend(&self.prices.found);
             self.forest.graph.rebuild(n, &self.edges);
-            self.forest.restart(&violated);
+            self.forest.restart(&self.prices.found);
         }
-        let mut matching = self.export(scale);
-        matching.weight = matching.edges().map(|(u, v)| metric.distance(u, v)).sum();
-        Ok(matching)
     }
 
     /// See [`sparse_min_weight_perfect_matching`].

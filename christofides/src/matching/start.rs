@@ -43,7 +43,7 @@ impl Forest {
     /// exposed by that. The graph must already contain the edges; no tree may be alive.
     pub fn restart(&mut self, added: &[(u32, u32, i64)]) {
         self.queue.clear();
-        let mut exposed = Vec::new();
+        let mut exposed = std::mem::take(&mut self.scratch);
         for &(u, v, weight) in added {
             while self.top(u) == self.top(v) {
                 self.lower(u, self.dual(self.top(u)), &mut exposed);
@@ -73,6 +73,8 @@ impl Forest {
                 self.plant(node);
             }
         }
+        exposed.clear();
+        self.scratch = exposed;
     }
 
     /// Lowers the radius of a vertex, taking blossoms around it apart as their duals are used up; it ends up exposed.

@@ -38,17 +38,26 @@ pub fn minimum_spanning_tree(metric: &impl Metric) -> Result<Vec<[usize; 2]>, Er
 }
 
 pub(crate) fn spanning_tree(metric: &impl Metric) -> Vec<[usize; 2]> {
+    let mut tree = Vec::with_capacity(metric.len().saturating_sub(1));
+    spanning_tree_into(metric, &mut Prim::default(), &mut tree);
+    tree
+}
+
+/// The same in given storage; only the algorithms of points allocate.
+pub(crate) fn spanning_tree_into(metric: &impl Metric, prim: &mut Prim, tree: &mut Vec<[usize; 2]>) {
+    tree.clear();
     match metric.geometry() {
-        _ if metric.len() <= DENSE_UP_TO => prim::prim(metric),
-        Geometry::Planar(points) => kruskal::kruskal(points),
-        Geometry::Spatial(points) => boruvka(points, &vec![0.0; points.len()]),
-        Geometry::Abstract => prim::prim(metric),
+        Geometry::Planar(points) if points.len() > DENSE_UP_TO => tree.extend(kruskal::kruskal(points)),
+        Geometry::Spatial(points) if points.len() > DENSE_UP_TO => {
+            tree.extend(boruvka(points, &vec![0.0; points.len()]));
+        }
+        _ => prim.tree(metric, tree),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{boruvka, kruskal::kruskal, prim::prim};
+    use super::{Prim, boruvka, kruskal::kruskal};
     use crate::metric::Metric;
     use crate::points::Points;
     use proptest::prelude::*;
@@ -68,7 +77,8 @@ mod tests {
     proptest! {
         #[test]
         fn three_algorithms_agree(points in points()) {
-            let dense = prim(&Points(&points));
+            let mut dense = Vec::new();
+            Prim::default().tree(&Points(&points), &mut dense);
             for tree in [kruskal(&points), boruvka(&points, &vec![0.0; points.len()])] {
                 prop_assert_eq!(tree.len(), dense.len());
                 prop_assert!((weight(&points, &tree) - weight(&points, &dense)).abs() <= 1e-9 * weight(&points, &dense));

@@ -2,14 +2,6 @@
 
 use crate::metric::Metric;
 
-/// The tree that grows from vertex 0 by its nearest outside vertex (Prim 1957); `O(n^2)` time, `O(n)` memory.
-pub(crate) fn prim(metric: &impl Metric) -> Vec<[usize; 2]> {
-    let mut tree = Vec::with_capacity(metric.len().saturating_sub(1));
-    let mut prim = Prim::default();
-    prim.run(metric.len(), |u, v| metric.distance(u, v), |from, to, _| tree.push([from, to]));
-    tree
-}
-
 /// Storage of the algorithm: the vertices outside the tree, each with its nearest vertex inside.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Prim {
@@ -19,6 +11,11 @@ pub(crate) struct Prim {
 }
 
 impl Prim {
+    /// Appends the tree that grows from vertex 0 by its nearest outside vertex (Prim 1957); `O(n^2)` time, `O(n)` memory.
+    pub fn tree(&mut self, metric: &impl Metric, tree: &mut Vec<[usize; 2]>) {
+        self.run(metric.len(), |u, v| metric.distance(u, v), |from, to, _| tree.push([from, to]));
+    }
+
     /// Calls `add` with every edge of a minimum spanning tree on `0..n` and its cost; vertices are named in the order in
     /// which they join.
     #[inline]
