@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::exact::{exact_path, exact_tour};
-use crate::improve::{Pinned, chained_improve, chained_improve_path};
+use crate::improve::{Effort, Pinned, chained_improve_path};
 use crate::lower_bound::bound;
 use crate::metric::Metric;
 use crate::tour::{Ends, Path, Tour};
@@ -101,18 +101,35 @@ pub fn solve(
     options: &Options,
     should_stop: &mut dyn FnMut() -> bool,
 ) -> Result<Tour, Error> {
+    let mut workspace = Workspace::default();
+    solve_with(&mut workspace, metric, options, should_stop)?;
+    Ok(workspace.tour)
+}
+
+/// [`solve`] in reused storage, where the tour stays until the next call.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_with<'a>(
+    workspace: &'a mut Workspace,
+    metric: &impl Metric,
+    options: &Options,
+    should_stop: &mut dyn FnMut() -> bool,
+) -> Result<&'a Tour, Error> {
     validate_finite(metric)?;
     let n = metric.len();
     if n <= options.exact_up_to {
-        return exact_tour(metric);
+        workspace.tour = exact_tour(metric)?;
+        return Ok(&workspace.tour);
     }
-    let start = from_tree_and_matching(metric)?;
-    let tour = chained_improve(metric, start, options.kicks, options.seed, should_stop)?;
-    if options.ascent_iterations == 0 {
-        return Ok(tour);
+    workspace.run(metric)?;
+    workspace.improve(metric, Effort { kicks: options.kicks, seed: options.seed, should_stop });
+    if options.ascent_iterations > 0 {
+        let stop = &mut || n > PATIENT_UP_TO && should_stop();
+        let bound = bound(metric, options.ascent_iterations, stop).value;
+        workspace.tour = std::mem::take(&mut workspace.tour).with_lower_bound(bound.max(0.0));
     }
-    let bound = bound(metric, options.ascent_iterations, &mut || n > PATIENT_UP_TO && should_stop()).value;
-    Ok(tour.with_lower_bound(bound.max(0.0)))
+    Ok(&workspace.tour)
 }
 
 /// A short path with the given ends: exact if small, else improved within the budget of `options`.
@@ -131,7 +148,7 @@ pub fn solve_path(
     if n <= options.exact_up_to {
         return exact_path(metric, ends);
     }
-    let path = Path::measured(metric, ends.any_order(n));
+    let path = start_path(metric, ends)?;
     let path = chained_improve_path(metric, path, ends, options.kicks, options.seed, should_stop)?;
     if options.ascent_iterations == 0 {
         return Ok(path);
@@ -140,4 +157,23 @@ pub fn solve_path(
     let mut stop = || n > PATIENT_UP_TO && should_stop();
     let bound = bound(&pinned, options.ascent_iterations, &mut stop).value - pinned.offset();
     Ok(path.with_lower_bound(bound.max(0.0)))
+}
+
+/// Christofides' tour, opened at the start (or at its longest edge if that is free), with a named end moved to the end.
+fn start_path(metric: &impl Metric, ends: Ends) -> Result<Path, Error> {
+    let mut order = from_tree_and_matching(metric)?.into_order();
+    let n = order.len();
+    let first = match ends {
+        Ends::Start(start) | Ends::Both(start, _) => order.iter().position(|&v| v == start).unwrap_or(0),
+        Ends::Free => {
+            let length = |k: usize| metric.distance(order[(k + n - 1) % n], order[k]);
+            (1..n).fold(0, |longest, k| if length(k) > length(longest) { k } else { longest })
+        }
+    };
+    order.rotate_left(first.min(n));
+    if let Ends::Both(_, end) = ends {
+        order.retain(|&v| v != end);
+        order.push(end);
+    }
+    Ok(Path::measured(metric, order))
 }

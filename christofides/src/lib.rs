@@ -24,7 +24,7 @@
 //! | To get | call | cost |
 //! |---|---|---|
 //! | a tour of at most 3/2 optimum | [`christofides`], [`christofides_with`] | `O(n log n)` typically for points, `O(n^2)` and more otherwise |
-//! | a short tour with its gap | [`solve`] | by the budget in [`Options`] |
+//! | a short tour with its gap | [`solve`], [`solve_with`] | by the budget in [`Options`] |
 //! | a short open path | [`solve_path`] | by the budget |
 //! | a proven optimum | [`exact_tour`], [`exact_path`] | some 10 ms for 40 points of the plane |
 //! | a better tour or path | [`improve`], [`chained_improve`], [`improve_path`], [`chained_improve_path`] | by the kicks |
@@ -109,7 +109,7 @@ mod tour;
 mod validate;
 mod workspace;
 
-pub use algorithm::{Options, christofides, christofides_with, solve, solve_path};
+pub use algorithm::{Options, christofides, christofides_with, solve, solve_path, solve_with};
 pub use error::Error;
 pub use euler::euler_circuit;
 pub use exact::{exact_path, exact_tour};

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::euler::Walk;
+use crate::improve::{Effort, LocalSearch};
 use crate::matching::Solver;
 use crate::metric::{Geometry, Metric};
 use crate::points::Points;
@@ -9,10 +10,11 @@ use crate::shortcut::Ring;
 use crate::spanning_tree::{Prim, spanning_tree_into};
 use crate::tour::Tour;
 
-/// Storage of [`christofides_with`](crate::christofides_with).
+/// Storage of [`christofides_with`](crate::christofides_with) and [`solve_with`](crate::solve_with).
 ///
 /// Every buffer grows to the greatest need so far and stays. Up to 150 vertices Christofides' algorithm then allocates nothing;
-/// above that the Delaunay triangulation and the k-d trees, which are rebuilt for new points, do.
+/// above that the Delaunay triangulation and the k-d trees, which are rebuilt for new points, do. Of [`solve_with`](crate::solve_with)
+/// the local search keeps its storage, but for a k-d tree; exact solution and lower bound allocate theirs.
 ///
 /// # Examples
 /// ```
@@ -38,6 +40,7 @@ pub struct Workspace {
     matching: Solver,
     walk: Walk,
     ring: Ring,
+    local: LocalSearch,
     pub(crate) tour: Tour,
 }
 
@@ -56,6 +59,11 @@ impl Workspace {
         self.ring.shortcut(metric, self.walk.circuit())?;
         self.tour.replace(metric, self.ring.order(self.walk.circuit()));
         Ok(())
+    }
+
+    /// Shortens the tour.
+    pub(crate) fn improve(&mut self, metric: &impl Metric, effort: Effort<'_>) {
+        self.local.shorten(metric, &mut self.tour, effort);
     }
 
     fn find_odd_vertices(&mut self, n: usize) {

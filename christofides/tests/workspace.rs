@@ -1,6 +1,9 @@
 //! Reused storage: the same results, and nothing allocated once it has grown.
 
-use christofides::{FromFn, Metric, Points, Workspace, christofides, christofides_with};
+use christofides::{
+    Ends, FromFn, Metric, Options, Points, Workspace, christofides, christofides_with, solve, solve_path,
+    solve_with,
+};
 
 /// Points in the unit square by a linear congruence.
 fn uniform(n: usize, mut state: u64) -> Vec<[f64; 2]> {
@@ -57,5 +60,54 @@ fn storage_leaves_no_trace() {
         let points = uniform(n, n as u64);
         let again = christofides_with(&mut workspace, &Points(&points)).unwrap();
         assert_eq!(again, &christofides(&Points(&points)).unwrap(), "{n}");
+    }
+}
+
+#[test]
+fn solving_in_reused_storage_gives_the_same_bits() {
+    let options = Options::default().with_kicks(50).with_ascent_iterations(20);
+    let mut workspace = Workspace::default();
+    for n in [40, 3, 200, 0, 12, 9, 7, 150, 1, 2, 11] {
+        for exact_up_to in [0, 10] {
+            let points = uniform(n, n as u64);
+            let options = options.clone().with_exact_up_to(exact_up_to);
+            let again = solve_with(&mut workspace, &Points(&points), &options, &mut || false).unwrap();
+            assert_eq!(again, &solve(&Points(&points), &options, &mut || false).unwrap(), "{n}");
+        }
+    }
+}
+
+/// Without positions no k-d tree is built: nothing is left that allocates.
+#[test]
+fn the_local_search_allocates_nothing_again() {
+    let points = uniform(100, 5);
+    let metric = FromFn::metric(100, |i, j| Points(&points).distance(i, j));
+    let options = Options::default().with_kicks(100).with_ascent_iterations(0);
+    let mut workspace = Workspace::default();
+    let mut run = || solve_with(&mut workspace, &metric, &options, &mut || false).map(|_| ()).unwrap();
+    run();
+    assert_eq!(allocation_counter::measure(run).count_total, 0);
+}
+
+/// Without a kick the path ends at a local optimum near Christofides' tour, whatever the order of the input.
+#[test]
+fn paths_start_from_a_good_tour() {
+    let points = uniform(300, 8);
+    let metric = Points(&points);
+    let options = Options::default().with_kicks(0).with_ascent_iterations(100);
+    let tour = christofides(&metric).unwrap();
+    for (ends, allowance) in [(Ends::Free, 0.0), (Ends::Start(7), 0.0), (Ends::Both(7, 290), 1.5)] {
+        let path = solve_path(&metric, ends, &options, &mut || false).unwrap();
+        assert!(
+            path.cost() <= tour.cost() + allowance && path.gap().unwrap() < 0.15,
+            "{ends:?} {:?}",
+            path.gap()
+        );
+        if let Ends::Start(start) | Ends::Both(start, _) = ends {
+            assert_eq!(path.order()[0], start);
+        }
+        if let Ends::Both(_, end) = ends {
+            assert_eq!(path.order()[299], end);
+        }
     }
 }

@@ -11,12 +11,15 @@ pub(crate) struct ArrayTour {
 }
 
 impl ArrayTour {
-    pub fn new(order: Vec<u32>) -> Self {
-        let mut position = vec![0; order.len()];
-        for (k, &v) in order.iter().enumerate() {
-            position[v as usize] = k as u32;
+    /// Takes over an order of all vertices.
+    pub fn load(&mut self, order: impl Iterator<Item = u32>) {
+        self.order.clear();
+        self.order.extend(order);
+        self.position.resize(self.order.len(), 0);
+        for (k, &v) in self.order.iter().enumerate() {
+            self.position[v as usize] = k as u32;
         }
-        ArrayTour { order, position, is_backward: false }
+        self.is_backward = false;
     }
 
     pub fn len(&self) -> usize {

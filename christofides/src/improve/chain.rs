@@ -1,8 +1,7 @@
 //! Chained local search: kick, repair, keep what is no worse (Martin, Otto, Felten 1991; Applegate, Cook, Rohe 2003).
 
-use super::array_tour::ArrayTour;
 use super::kick::kick;
-use super::lin_kernighan::Search;
+use super::lin_kernighan::{Arrays, Search};
 use super::neighbours::Neighbours;
 use crate::metric::Metric;
 use rand::SeedableRng;
@@ -44,17 +43,29 @@ impl Agenda {
     }
 }
 
-/// Improves `order` (at least eight vertices) and returns it as it is when the effort ends.
-pub(crate) fn chained(
-    metric: &impl Metric,
-    neighbours: &Neighbours,
-    order: Vec<u32>,
-    effort: Effort<'_>,
-) -> Vec<u32> {
-    let n = order.len();
-    let mut agenda = Agenda { queue: VecDeque::with_capacity(n), is_waiting: vec![false; n] };
-    order.iter().for_each(|&v| agenda.push(v));
-    let mut search = Search::new(metric, neighbours, ArrayTour::new(order));
+/// Storage of the chained search; holds the tour from which it starts and, afterwards, the one at which it ended.
+#[derive(Debug, Default)]
+pub(crate) struct Chain {
+    agenda: Agenda,
+    pub arrays: Arrays,
+}
+
+impl Chain {
+    /// Improves the tour (at least eight vertices); it is left as it is when the effort ends.
+    pub fn run(&mut self, metric: &impl Metric, neighbours: &Neighbours, effort: Effort<'_>) {
+        let tour = &self.arrays.tour;
+        self.agenda.queue.clear();
+        self.agenda.is_waiting.clear();
+        self.agenda.is_waiting.resize(tour.len(), false);
+        tour.order().iter().for_each(|&v| self.agenda.push(v));
+        let mut search = Search::new(metric, neighbours, &mut self.arrays);
+        chained(&mut search, &mut self.agenda, effort);
+        self.arrays = search.into_arrays();
+    }
+}
+
+fn chained<M: Metric>(search: &mut Search<'_, M>, agenda: &mut Agenda, effort: Effort<'_>) {
+    let n = search.tour.len();
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(effort.seed);
     let mut looked = 0;
     let mut improvements = 0;
@@ -68,12 +79,12 @@ pub(crate) fn chained(
                 if gain < 0.0 {
                     search.roll_back(0);
                 }
-                return search.tour.order().to_vec();
+                return;
             }
             while let Some(gained) = search.improve_at(v) {
                 improvements += 1;
                 if improvements > IMPROVEMENTS * n {
-                    return search.tour.order().to_vec();
+                    return;
                 }
                 gain += gained;
                 search.touched.iter().for_each(|&u| agenda.push(u));
@@ -86,12 +97,12 @@ pub(crate) fn chained(
             search.roll_back(0);
         }
         if kicks == effort.kicks {
-            return search.tour.order().to_vec();
+            return;
         }
         kicks += 1;
         improvements = 0;
         search.log.clear();
-        gain = kick(&mut search, &mut rng);
+        gain = kick(search, &mut rng);
         search.touched.iter().for_each(|&v| agenda.push(v));
     }
 }

@@ -43,6 +43,15 @@ pub(crate) struct Search<'a, M> {
     added: Vec<(u32, u32)>,
 }
 
+/// Storage of a search.
+#[derive(Debug, Default)]
+pub(crate) struct Arrays {
+    pub tour: ArrayTour,
+    log: Vec<(u32, u32)>,
+    touched: Vec<u32>,
+    added: Vec<(u32, u32)>,
+}
+
 /// The better of two candidates, by their gain.
 fn offer(best: &mut Option<(f64, Exchange)>, gain: f64, exchange: Exchange) {
     if best.is_none_or(|(greatest, _)| gain > greatest) {
@@ -51,16 +60,16 @@ fn offer(best: &mut Option<(f64, Exchange)>, gain: f64, exchange: Exchange) {
 }
 
 impl<'a, M: Metric> Search<'a, M> {
-    pub fn new(metric: &'a M, neighbours: &'a Neighbours, tour: ArrayTour) -> Self {
-        Search {
-            metric,
-            neighbours,
-            tour,
-            log: Vec::new(),
-            is_turned: false,
-            touched: Vec::new(),
-            added: Vec::new(),
-        }
+    /// A search from the tour in `arrays`, which lends its storage.
+    pub fn new(metric: &'a M, neighbours: &'a Neighbours, arrays: &mut Arrays) -> Self {
+        let Arrays { tour, mut log, touched, added } = std::mem::take(arrays);
+        log.clear();
+        Search { metric, neighbours, tour, log, is_turned: false, touched, added }
+    }
+
+    /// The storage with the tour as it is.
+    pub fn into_arrays(self) -> Arrays {
+        Arrays { tour: self.tour, log: self.log, touched: self.touched, added: self.added }
     }
 
     #[inline]

@@ -13,7 +13,8 @@ use crate::kd_tree::KdTree;
 use crate::metric::{Geometry, Metric};
 use crate::points::Points;
 use crate::tour::{Ends, Path, Tour};
-use chain::{Effort, chained};
+use chain::Chain;
+pub(crate) use chain::Effort;
 use neighbours::Neighbours;
 pub(crate) use pinned::Pinned;
 #[cfg(test)]
@@ -54,13 +55,9 @@ pub fn chained_improve(
     seed: u64,
     should_stop: &mut dyn FnMut() -> bool,
 ) -> Result<Tour, Error> {
-    let before = Tour::new(metric, tour.into_order())?;
-    if !before.cost().is_finite() {
-        return Ok(before);
-    }
-    let effort = Effort { kicks, seed, should_stop };
-    let after = Tour::measured(metric, search(metric, before.order(), effort));
-    Ok(if after.cost() < before.cost() { after } else { before })
+    let mut tour = Tour::new(metric, tour.into_order())?;
+    LocalSearch::default().shorten(metric, &mut tour, Effort { kicks, seed, should_stop });
+    Ok(tour)
 }
 
 /// Chained Lin-Kernighan on a path, its named ends fixed; see [`chained_improve`].
@@ -88,45 +85,72 @@ pub fn chained_improve_path(
         subsets::tour(&pinned)
     } else {
         let has_free_end = !matches!(ends, Ends::Both(..));
-        let neighbours = Neighbours::nearest(metric, NEIGHBOURS).with_joint(has_free_end);
-        widen(&chained(&pinned, &neighbours, narrow(&closed), effort))
+        let mut neighbours = Neighbours::default();
+        neighbours.fill(metric, NEIGHBOURS);
+        let mut chain = Chain::default();
+        chain.arrays.tour.load(closed.iter().map(|&v| v as u32));
+        chain.run(&pinned, &neighbours.with_joint(has_free_end), effort);
+        chain.arrays.tour.order().iter().map(|&v| v as usize).collect()
     };
     let after = Path::measured(metric, pinned.open(order));
     Ok(if after.cost() < before.cost() { after } else { before })
 }
 
-/// Points are renumbered in the order of a k-d tree, so that near vertices are near in memory.
-fn search(metric: &impl Metric, order: &[usize], effort: Effort<'_>) -> Vec<usize> {
-    if order.len() < SEARCH_FROM {
-        return subsets::tour(metric);
-    }
-    match metric.geometry() {
-        Geometry::Planar(points) => search_points(points, order, effort),
-        Geometry::Spatial(points) => search_points(points, order, effort),
-        Geometry::Abstract => {
-            let neighbours = Neighbours::nearest(metric, NEIGHBOURS);
-            widen(&chained(metric, &neighbours, narrow(order), effort))
+/// Storage of the local search on tours.
+#[derive(Debug, Default)]
+pub(crate) struct LocalSearch {
+    neighbours: Neighbours,
+    chain: Chain,
+    /// New numbers of the vertices.
+    number: Vec<u32>,
+    after: Tour,
+}
+
+impl LocalSearch {
+    /// Improves a measured tour; one whose cost is not finite is left as it is.
+    pub fn shorten(&mut self, metric: &impl Metric, tour: &mut Tour, effort: Effort<'_>) {
+        if !tour.cost().is_finite() {
+            return;
+        }
+        if metric.len() < SEARCH_FROM {
+            self.after.replace(metric, subsets::tour(metric).into_iter());
+        } else {
+            match metric.geometry() {
+                Geometry::Planar(points) => self.search_points(metric, points, tour, effort),
+                Geometry::Spatial(points) => self.search_points(metric, points, tour, effort),
+                Geometry::Abstract => self.search(metric, tour, effort),
+            }
+        }
+        if self.after.cost() < tour.cost() {
+            std::mem::swap(tour, &mut self.after);
         }
     }
-}
 
-fn search_points<const D: usize>(points: &[[f64; D]], order: &[usize], effort: Effort<'_>) -> Vec<usize> {
-    let tree = KdTree::new(points);
-    let mut number = vec![0; points.len()];
-    for (k, &v) in tree.order.iter().enumerate() {
-        number[v as usize] = k as u32;
+    fn search(&mut self, metric: &impl Metric, tour: &Tour, effort: Effort<'_>) {
+        self.neighbours.fill(metric, NEIGHBOURS);
+        self.chain.arrays.tour.load(tour.order().iter().map(|&v| v as u32));
+        self.chain.run(metric, &self.neighbours, effort);
+        self.after.replace(metric, self.chain.arrays.tour.order().iter().map(|&v| v as usize));
     }
-    let metric = Points(&tree.points);
-    let neighbours = Neighbours::nearest(&metric, NEIGHBOURS);
-    let renumbered = order.iter().map(|&v| number[v]).collect();
-    let improved = chained(&metric, &neighbours, renumbered, effort);
-    improved.into_iter().map(|k| tree.order[k as usize] as usize).collect()
-}
 
-fn narrow(order: &[usize]) -> Vec<u32> {
-    order.iter().map(|&v| v as u32).collect()
-}
-
-fn widen(order: &[u32]) -> Vec<usize> {
-    order.iter().map(|&v| v as usize).collect()
+    /// Points are renumbered in the order of a k-d tree, so that near vertices are near in memory.
+    fn search_points<const D: usize>(
+        &mut self,
+        metric: &impl Metric,
+        points: &[[f64; D]],
+        tour: &Tour,
+        effort: Effort<'_>,
+    ) {
+        let tree = KdTree::new(points);
+        self.number.resize(points.len(), 0);
+        for (k, &v) in tree.order.iter().enumerate() {
+            self.number[v as usize] = k as u32;
+        }
+        let renumbered = Points(&tree.points);
+        self.neighbours.fill(&renumbered, NEIGHBOURS);
+        self.chain.arrays.tour.load(tour.order().iter().map(|&v| self.number[v]));
+        self.chain.run(&renumbered, &self.neighbours, effort);
+        let order = self.chain.arrays.tour.order();
+        self.after.replace(metric, order.iter().map(|&k| tree.order[k as usize] as usize));
+    }
 }

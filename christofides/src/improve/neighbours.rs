@@ -11,27 +11,32 @@ const PER_QUADRANT: usize = 2;
 pub(crate) struct Neighbours {
     start: Vec<u32>,
     entries: Vec<(f64, u32)>,
+    row: Vec<(f64, u32)>,
+    stack: Vec<(f64, u32)>,
+    chosen: Vec<u32>,
 }
 
 impl Neighbours {
-    /// The `k` nearest of every vertex; `O(n log n)` for points, else `O(n^2)`.
-    pub fn nearest(metric: &impl Metric, k: usize) -> Self {
+    /// Lists the `k` nearest of every vertex; `O(n log n)` for points, else `O(n^2)`.
+    pub fn fill(&mut self, metric: &impl Metric, k: usize) {
+        let n = metric.len();
+        let k = k.min(n.saturating_sub(1));
+        self.start.clear();
+        self.start.extend((0..=n).map(|v| (v * k) as u32));
         match metric.positions() {
-            Geometry::Planar(points) => Self::of_points(metric, points, k),
-            Geometry::Spatial(points) => Self::of_points(metric, points, k),
-            Geometry::Abstract => Self::by_pairs(metric, k),
+            Geometry::Planar(points) => self.fill_near(metric, &KdTree::new(points), k),
+            Geometry::Spatial(points) => self.fill_near(metric, &KdTree::new(points), k),
+            Geometry::Abstract => self.fill_by_pairs(metric, k),
         }
     }
 
     /// Of the three times as many nearest ones that are looked at, up to two in each quadrant come first, so that a vertex
     /// at the edge of a cluster has neighbours on both sides.
-    fn of_points<const D: usize>(metric: &impl Metric, points: &[[f64; D]], k: usize) -> Self {
-        let tree = KdTree::new(points);
-        let k = k.min(points.len().saturating_sub(1));
-        let mut entries = vec![(0.0, 0); points.len() * k];
-        let (mut found, mut stack, mut chosen) = (Vec::new(), Vec::new(), Vec::new());
+    fn fill_near<const D: usize>(&mut self, metric: &impl Metric, tree: &KdTree<D>, k: usize) {
+        let Neighbours { entries, row: found, stack, chosen, .. } = self;
+        entries.resize(tree.order.len() * k, (0.0, 0));
         for (position, &index) in tree.order.iter().enumerate() {
-            tree.nearest(position, 3 * k, &mut found, &mut stack);
+            tree.nearest(position, 3 * k, found, stack);
             chosen.clear();
             let mut in_quadrant = [0; 4];
             let quadrant = |other: u32| {
@@ -47,20 +52,18 @@ impl Neighbours {
             });
             chosen.extend(found.iter().map(|&(_, other)| other).take(k - chosen.len()));
             let row = &mut entries[index as usize * k..][..k];
-            for (slot, &other) in row.iter_mut().zip(&chosen) {
+            for (slot, &other) in row.iter_mut().zip(&*chosen) {
                 let neighbour = tree.order[other as usize];
                 *slot = (metric.distance(index as usize, neighbour as usize), neighbour);
             }
             row.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         }
-        Self { start: (0..=points.len()).map(|v| (v * k) as u32).collect(), entries }
     }
 
-    fn by_pairs(metric: &impl Metric, k: usize) -> Self {
+    fn fill_by_pairs(&mut self, metric: &impl Metric, k: usize) {
         let n = metric.len();
-        let k = k.min(n.saturating_sub(1));
-        let mut entries = Vec::with_capacity(n * k);
-        let mut row: Vec<(f64, u32)> = Vec::with_capacity(n);
+        let Neighbours { entries, row, .. } = self;
+        entries.clear();
         let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         for i in 0..n {
             row.clear();
@@ -71,7 +74,6 @@ impl Neighbours {
             row[..k].sort_unstable_by(order);
             entries.extend(&row[..k]);
         }
-        Self { start: (0..=n).map(|v| (v * k) as u32).collect(), entries }
     }
 
     /// Adds the joint of a path (see [`Pinned`](super::pinned::Pinned)): a neighbour of every vertex at distance zero if
