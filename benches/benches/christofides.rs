@@ -29,7 +29,8 @@ fn matching(criterion: &mut Criterion) {
 
 fn whole(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("christofides/whole");
-    for n in [12, 100, 1000, 10_000] {
+    group.sample_size(10);
+    for n in [12, 100, 1000, 10_000, 100_000] {
         let points = uniform(n);
         group.bench_function(BenchmarkId::from_parameter(n), |bencher| {
             bencher.iter(|| christofides(&Points(black_box(&points))));

@@ -12,7 +12,7 @@ use crate::error::Error;
 /// `O(n + m)` time and memory.
 pub fn euler_circuit(n: usize, edges: &[[usize; 2]]) -> Result<Vec<usize>, Error> {
     let mut walk = Walk::default();
-    walk.find(n, edges)?;
+    walk.find(n, edges, 0)?;
     Ok(walk.circuit)
 }
 
@@ -28,12 +28,12 @@ pub(crate) struct Walk {
 }
 
 impl Walk {
-    /// See [`euler_circuit`].
-    pub fn find(&mut self, n: usize, edges: &[[usize; 2]]) -> Result<(), Error> {
+    /// See [`euler_circuit`]; edge `first` and those after it are taken first at every vertex.
+    pub fn find(&mut self, n: usize, edges: &[[usize; 2]], first: usize) -> Result<(), Error> {
         if let Some(&vertex) = edges.iter().flatten().find(|&&vertex| vertex >= n) {
             return Err(Error::VertexOutOfRange { vertex, n });
         }
-        self.list_incident(n, edges)?;
+        self.list_incident(n, edges, first)?;
         self.walk(n, edges);
         if self.circuit.len() == edges.len() && (0..n).all(|v| self.start[v] < self.start[v + 1]) {
             return Ok(()); // every edge used, and one at every vertex
@@ -46,7 +46,7 @@ impl Walk {
         &self.circuit
     }
 
-    fn list_incident(&mut self, n: usize, edges: &[[usize; 2]]) -> Result<(), Error> {
+    fn list_incident(&mut self, n: usize, edges: &[[usize; 2]], first: usize) -> Result<(), Error> {
         let start = &mut self.start;
         start.clear();
         start.resize(n + 2, 0);
@@ -61,9 +61,11 @@ impl Walk {
             start[v] += start[v - 1];
         }
         self.incident.resize(2 * edges.len(), 0);
-        for (k, &vertex) in edges.iter().flatten().enumerate() {
-            self.incident[start[vertex + 1]] = k / 2;
-            start[vertex + 1] += 1;
+        for edge in (first..edges.len()).chain(0..first) {
+            for vertex in edges[edge] {
+                self.incident[start[vertex + 1]] = edge;
+                start[vertex + 1] += 1;
+            }
         }
         Ok(())
     }

