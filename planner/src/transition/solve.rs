@@ -7,7 +7,8 @@ use super::problem::{Goal, KeepOut, MinimumTime};
 use crate::mission::{Transcription, TransitionSettings};
 use crate::plan::{Entry, Miss, SolverStatus, Transition};
 use quad_dynamics::Motion;
-use traj_opt::{Guess, Mesh, Options, Solution};
+use std::ops::ControlFlow;
+use traj_opt::{Guess, Mesh, Options, Solution, Workspace};
 
 /// Misses (m, m/s, rad) above this are worth a finer integration inside the transcription: a tenth of what is tolerated.
 const GOOD_MISS: Miss = Miss { position: 0.005, velocity: 0.005, attitude: 0.002 };
@@ -16,7 +17,7 @@ const GOOD_BOUND: f64 = 0.002;
 /// Solves of one transition with enlarged keep-outs, narrowed heights or finer steps.
 const ROUNDS: usize = 6;
 /// Scaled residual at which a transition counts as solved: far below what any vehicle can follow.
-const TOLERANCE: f64 = 1e-6;
+const TOLERANCE: f64 = 3e-6;
 /// First barrier parameter: the guesses meet both ends, and this takes half as many iterations as the solver's own 0.1.
 const FIRST_MU: f64 = 0.01;
 /// Longest Runge-Kutta step to begin with (s): at 6 rad/s its error in attitude is about 1e-4 rad.
@@ -91,6 +92,13 @@ pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     Err(unsolved)
 }
 
+/// Where a solve starts: at a trajectory, or at a solution on the same mesh with its multipliers. The latter only pays where
+/// little has changed; from one entry to the next it does not.
+enum First<const NX: usize, const NU: usize> {
+    Guess(Guess<NX, NU>),
+    Solution(Box<Solution<NX, NU>>),
+}
+
 /// What may change from one solve of a transition to the next.
 struct Setting {
     keep_outs: Vec<KeepOut>,
@@ -135,7 +143,7 @@ impl<F> Attempt<'_, F> {
     /// Solves, examines the result between the knots, and solves again with what was overstepped put farther away.
     fn refine<const NX: usize, const NU: usize>(
         &self,
-        mut first: Guess<NX, NU>,
+        first: Guess<NX, NU>,
         keep_outs: Vec<KeepOut>,
     ) -> Result<Transition, Unsolved>
     where
@@ -148,6 +156,7 @@ impl<F> Attempt<'_, F> {
             segments: self.segments,
         };
         let mut residuals = Unsolved::NOTHING;
+        let mut first = First::Guess(first);
         for round in 1..=ROUNDS {
             let Some(solution) = self.solve(&first, &setting) else { return Err(residuals) };
             residuals = Unsolved {
@@ -164,10 +173,15 @@ impl<F> Attempt<'_, F> {
                 return Ok(transition);
             }
             let clear = seen.clearance >= 0.0;
+            let grid = (setting.segments, setting.longest_step);
             if !self.adjust(&mut setting, &transition, &seen) || (round == ROUNDS && clear) {
                 return Ok(transition);
             }
-            first = Guess::from_solution(&solution, 1);
+            first = if grid == (setting.segments, setting.longest_step) {
+                First::Solution(Box::new(solution))
+            } else {
+                First::Guess(Guess::from_solution(&solution, 1))
+            };
         }
         Err(residuals)
     }
@@ -203,7 +217,7 @@ impl<F> Attempt<'_, F> {
 
     fn solve<const NX: usize, const NU: usize>(
         &self,
-        first: &Guess<NX, NU>,
+        first: &First<NX, NU>,
         setting: &Setting,
     ) -> Option<Solution<NX, NU>>
     where
@@ -212,6 +226,14 @@ impl<F> Attempt<'_, F> {
         let Setting { ref keep_outs, heights, longest_step, segments } = *setting;
         let problem =
             MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
+        let options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
+        let first = match first {
+            First::Guess(guess) => guess,
+            First::Solution(previous) => {
+                let go_on = |_: &_| ControlFlow::Continue(());
+                return traj_opt::solve_from(&mut Workspace::new(), &problem, previous, &options, go_on).ok();
+            }
+        };
         let uniform = first.final_time() / segments as f64;
         let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
         let transcription = match self.surroundings.settings.transcription {
@@ -222,14 +244,7 @@ impl<F> Attempt<'_, F> {
             Transcription::HermiteSimpson => traj_opt::Transcription::HermiteSimpson,
             Transcription::Trapezoidal => traj_opt::Transcription::Trapezoidal,
         };
-        traj_opt::solve(
-            &problem,
-            &mesh,
-            transcription,
-            first,
-            &Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU),
-        )
-        .ok()
+        traj_opt::solve(&problem, &mesh, transcription, first, &options).ok()
     }
 
     fn look<const NX: usize, const NU: usize>(&self, transition: &Transition) -> Option<Examination>
@@ -297,7 +312,7 @@ fn within(miss: &Miss, tolerance: &Miss) -> bool {
 
 /// Pushes one keep-out's boundary outwards by what it was entered, and a little more; adds it if it was not considered.
 fn enlarge(keep_outs: &mut Vec<KeepOut>, entered: KeepOut, by: f64) {
-    let margin = by + 0.01;
+    let margin = 1.3 * by + 0.01;
     match keep_outs.iter_mut().find(|keep_out| keep_out.centre == entered.centre) {
         Some(keep_out) => keep_out.radius += margin,
         None => keep_outs.push(KeepOut { radius: entered.radius + margin, ..entered }),
