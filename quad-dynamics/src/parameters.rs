@@ -185,7 +185,8 @@ impl VehicleParameters {
         max_speed: f64,
     ) -> Self {
         self.max_thrust = 4.0 * thrust_coefficient * max_speed * max_speed;
-        self.min_thrust_share = (min_speed / max_speed).powi(2);
+        // A negative speed gives a negative share, which is refused.
+        self.min_thrust_share = min_speed * min_speed.abs() / (max_speed * max_speed);
         self.torque_to_thrust = torque_coefficient / thrust_coefficient;
         self.propulsion.max_rotor_speed = max_speed;
         self

@@ -122,3 +122,14 @@ fn parameters_survive_a_file() {
     let unknown = text.replace("\"mass\"", "\"weight\":3.0,\"mass\"");
     assert!(serde_json::from_str::<Vehicle>(&unknown).is_err());
 }
+
+#[test]
+fn a_negative_least_rotor_speed_is_refused() {
+    let with_least = |speed: f64| {
+        let parameters =
+            VehicleParameters::survey_450().with_rotor_coefficients(1.2e-5, 1.9e-7, speed, 800.0);
+        Vehicle::new(parameters)
+    };
+    assert!(with_least(100.0).is_ok());
+    assert!(with_least(-100.0).is_err() && with_least(f64::NAN).is_err());
+}
