@@ -45,8 +45,9 @@ impl Settled {
         let leg = &legs[k];
         let circle = leg.loiter.map(|loiter| loiter.circle);
         let in_transition = time < leg.arrival_time();
-        let must_turn = circle.is_some_and(|circle| gone.contains(&circle)) || enters(airspace, planned, k);
-        if in_transition && (circle.is_none() || must_turn) {
+        let must_turn =
+            || circle.is_some_and(|circle| gone.contains(&circle)) || enters(airspace, planned, k);
+        if in_transition && (circle.is_none() || must_turn()) {
             let earliest = time + Replanner::REACTION - leg.start_time;
             let knot = leg.transition.knots.partition_point(|&knot| knot < earliest);
             if knot + 1 < leg.transition.knots.len()
