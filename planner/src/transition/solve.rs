@@ -16,6 +16,8 @@ const GOOD_MISS: Miss = Miss { position: 0.005, velocity: 0.005, attitude: 0.002
 const GOOD_BOUND: f64 = 0.002;
 /// Solves of one transition with enlarged keep-outs, narrowed heights or finer steps.
 const ROUNDS: usize = 6;
+/// The same while a keep-out is still entered: they are considered one by one as they are entered.
+const MOST_ROUNDS: usize = 16;
 /// Scaled residual at which a transition counts as solved: far below what any vehicle can follow.
 const TOLERANCE: f64 = 3e-6;
 /// First barrier parameter: the guesses meet both ends, and this takes half as many iterations as the solver's own 0.1.
@@ -157,7 +159,7 @@ impl<F> Attempt<'_, F> {
         };
         let mut residuals = Unsolved::NOTHING;
         let mut first = First::Guess(first);
-        for round in 1..=ROUNDS {
+        for round in 1..=MOST_ROUNDS {
             let Some(solution) = self.solve(&first, &setting) else { return Err(residuals) };
             residuals = Unsolved {
                 primal_residual: solution.residuals.primal,
@@ -174,7 +176,7 @@ impl<F> Attempt<'_, F> {
             }
             let clear = seen.clearance >= 0.0;
             let grid = (setting.segments, setting.longest_step);
-            if !self.adjust(&mut setting, &transition, &seen) || (round == ROUNDS && clear) {
+            if !self.adjust(&mut setting, &transition, &seen) || (round >= ROUNDS && clear) {
                 return Ok(transition);
             }
             first = if grid == (setting.segments, setting.longest_step) {
