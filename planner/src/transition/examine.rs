@@ -4,7 +4,7 @@ use super::flight::Flight;
 use super::problem::KeepOut;
 use crate::mission::Model;
 use crate::plan::{Miss, Transition};
-use nalgebra::{SVector, Vector3};
+use nalgebra::{SVector, Vector2, Vector3};
 use quad_dynamics::Motion;
 use traj_opt::{IntegrateOptions, Trajectory};
 
@@ -87,16 +87,20 @@ pub(crate) fn examine<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     };
     let options = IntegrateOptions::default();
     let mut state = initial;
+    let mut places = Vec::new();
     for (k, pair) in transition.knots.windows(2).enumerate() {
         let (from, to) = (pair[0], pair[1]);
         let at = |t: f64| control::<NU>(transition, k, ((t - from) / (to - from)).clamp(0.0, 1.0));
         let mut segment = Trajectory::starting_at(from, state);
         segment.extend(|t, x| flight.derivative(t, x, &at(t)), to, &options).ok()?;
         let looks = ((to - from) / LOOK_EVERY).ceil().max(1.0) as usize;
+        places.clear();
         for look in 0..=looks {
             let time = from + (to - from) * look as f64 / looks as f64;
-            seen.look(flight, &segment.state_at(time), &at(time), keep_outs, heights);
+            seen.look(flight, &segment.state_at(time), &at(time), heights);
+            places.push(seen.end.position.xy());
         }
+        seen.keep_clear(&places, keep_outs);
         state = *segment.end_state();
     }
     Some(seen)
@@ -108,20 +112,12 @@ impl Examination {
         flight: &F,
         state: &SVector<f64, NX>,
         control: &SVector<f64, NU>,
-        keep_outs: &[KeepOut],
         heights: [f64; 2],
     ) {
         let moment = flight.motion(state, control);
         self.length += (moment.position - self.end.position).norm();
         self.max_speed = self.max_speed.max(moment.velocity.norm());
         self.max_tilt = self.max_tilt.max(moment.tilt());
-        for (i, keep_out) in keep_outs.iter().enumerate() {
-            let [x, y] = keep_out.centre;
-            let clearance = (moment.position.x - x).hypot(moment.position.y - y) - keep_out.radius;
-            if clearance < self.clearance {
-                (self.clearance, self.closest) = (clearance, Some(i));
-            }
-        }
         let z = moment.position.z;
         let (least, greatest) = flight.control_bounds();
         let (low, high) = flight.state_bounds();
@@ -135,6 +131,23 @@ impl Examination {
         self.limit_violation = self.limit_violation.max(violation);
         self.height_violation = self.height_violation.max(heights[0] - z).max(z - heights[1]);
         self.end = moment;
+    }
+
+    /// Least distance of places to keep-outs; those that are far from the rectangle around all places are passed over.
+    fn keep_clear(&mut self, places: &[Vector2<f64>], keep_outs: &[KeepOut]) {
+        let Some(&first) = places.first() else { return };
+        let (low, high) = places.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+        for (i, keep_out) in keep_outs.iter().enumerate() {
+            let centre = Vector2::from(keep_out.centre);
+            let beyond = (low - centre).sup(&(centre - high)).sup(&Vector2::zeros());
+            if beyond.norm() - keep_out.radius >= self.clearance {
+                continue;
+            }
+            let nearest = places.iter().map(|place| (place - centre).norm()).fold(f64::INFINITY, f64::min);
+            if nearest - keep_out.radius < self.clearance {
+                (self.clearance, self.closest) = (nearest - keep_out.radius, Some(i));
+            }
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::mission::{Transcription, TransitionSettings};
 use crate::plan::{Entry, Miss, SolverStatus, Transition};
 use quad_dynamics::Motion;
 use std::ops::ControlFlow;
-use traj_opt::{Guess, Mesh, Options, Solution, Workspace};
+use traj_opt::{Guess, Iteration, Mesh, Options, Solution, Status, Workspace};
 
 /// Misses (m, m/s, rad) above this are worth a finer integration inside the transcription: a tenth of what is tolerated.
 const GOOD_MISS: Miss = Miss { position: 0.005, velocity: 0.005, attitude: 0.002 };
@@ -22,10 +22,18 @@ const MOST_ROUNDS: usize = 16;
 const TOLERANCE: f64 = 3e-6;
 /// First barrier parameter: the guesses meet both ends, and this takes half as many iterations as the solver's own 0.1.
 const FIRST_MU: f64 = 0.01;
-/// Longest Runge-Kutta step to begin with (s): at 6 rad/s its error in attitude is about 1e-4 rad.
+/// Longest Runge-Kutta step of a first solve (s). Segments are short where the attitude turns, so that even the longest flights
+/// take as long as with fine steps to 2e-4 of their time: enough to see that a candidate loses.
+const LONGEST_FIRST_STEP: f64 = 1.0;
+/// The same of a transition that is flown (s): at 6 rad/s its error in attitude is about 1e-4 rad.
 const LONGEST_STEP: f64 = 0.08;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
+
+/// Scaled primal residual of an iterate whose time tells something.
+const NEARLY_FEASIBLE: f64 = 1e-2;
+/// Bounds that hold in each segment, on controls and height; at the barrier parameter mu each is worth mu (s) of time.
+const BOUNDS_PER_SEGMENT: usize = 10;
 
 /// Keep-outs at least so far (m) from the straight line are only considered once they have been entered: most never are, and
 /// each makes every solve slower.
@@ -55,8 +63,8 @@ impl Unsolved {
 }
 
 /// The fastest transition from `start` to `goal` found from several guesses; `towards` is where guesses lead (for a
-/// circle a promising entry). One that takes longer than `to_beat` (s) is returned as soon as that is clear, looked at but not
-/// mended where it oversteps something between the knots: mending would only make it slower.
+/// circle a promising entry). One that takes longer than `to_beat` (s) is returned as soon as that is clear, as the solver left
+/// it: neither solved to the end, nor looked at between the knots.
 pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     flight: &F,
     start: &Motion,
@@ -154,7 +162,7 @@ impl<F> Attempt<'_, F> {
         let mut setting = Setting {
             keep_outs,
             heights: self.surroundings.heights,
-            longest_step: LONGEST_STEP,
+            longest_step: LONGEST_FIRST_STEP,
             segments: self.segments,
         };
         let mut residuals = Unsolved::NOTHING;
@@ -165,22 +173,24 @@ impl<F> Attempt<'_, F> {
                 primal_residual: solution.residuals.primal,
                 dual_residual: solution.residuals.dual.max(solution.residuals.complementarity),
             };
-            if !solution.status.is_success() {
+            // Only a candidate that loses is stopped.
+            if !solution.status.is_success() && solution.status != Status::Stopped {
                 return Err(residuals);
             }
             let mut transition = record::<NX, NU, F>(&solution);
-            let Some(seen) = self.look(&transition) else { return Err(residuals) };
-            complete(&mut transition, &seen, self.miss(&solution, &seen.end));
             if transition.duration > self.to_beat {
                 return Ok(transition);
             }
+            let Some(seen) = self.look(&transition) else { return Err(residuals) };
+            complete(&mut transition, &seen, self.miss(&solution, &seen.end));
             let clear = seen.clearance >= 0.0;
-            let grid = (setting.segments, setting.longest_step);
+            let segments = setting.segments;
             if !self.adjust(&mut setting, &transition, &seen) || (round >= ROUNDS && clear) {
                 return Ok(transition);
             }
-            first = if grid == (setting.segments, setting.longest_step) {
-                First::Solution(Box::new(solution))
+            first = if setting.segments == segments {
+                let substeps = substeps(transition.duration / segments as f64, setting.longest_step);
+                First::Solution(Box::new(solution.with_substeps(substeps)))
             } else {
                 First::Guess(Guess::from_solution(&solution, 1))
             };
@@ -211,7 +221,7 @@ impl<F> Attempt<'_, F> {
             again = true;
         }
         if !within(&transition.miss, &GOOD_MISS) {
-            setting.longest_step *= 0.5;
+            setting.longest_step = LONGEST_STEP.min(0.5 * setting.longest_step);
             again = true;
         }
         again
@@ -229,24 +239,32 @@ impl<F> Attempt<'_, F> {
         let problem =
             MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
         let options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
+        let workspace = &mut Workspace::new();
+        let watch = |iteration: &Iteration| self.watch(iteration, segments);
         let first = match first {
             First::Guess(guess) => guess,
             First::Solution(previous) => {
-                let go_on = |_: &_| ControlFlow::Continue(());
-                return traj_opt::solve_from(&mut Workspace::new(), &problem, previous, &options, go_on).ok();
+                return traj_opt::solve_from(workspace, &problem, previous, &options, watch).ok();
             }
         };
         let uniform = first.final_time() / segments as f64;
         let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
         let transcription = match self.surroundings.settings.transcription {
             Transcription::RungeKutta => {
-                let substeps = (1.5 * uniform / longest_step).ceil().clamp(1.0, 64.0) as usize;
-                traj_opt::Transcription::RungeKutta { substeps }
+                traj_opt::Transcription::RungeKutta { substeps: substeps(uniform, longest_step) }
             }
             Transcription::HermiteSimpson => traj_opt::Transcription::HermiteSimpson,
             Transcription::Trapezoidal => traj_opt::Transcription::Trapezoidal,
         };
-        traj_opt::solve(&problem, &mesh, transcription, first, &options).ok()
+        traj_opt::solve_with(workspace, &problem, &mesh, transcription, first, &options, watch).ok()
+    }
+
+    /// Gives a solve up once it is nearly feasible and what is left to gain, the duality gap of the barrier problem, does not
+    /// make it fast enough. The problem is not convex, so that this is no proof, but an estimate on the safe side.
+    fn watch(&self, iteration: &Iteration, segments: usize) -> ControlFlow<()> {
+        let gap = iteration.mu * (BOUNDS_PER_SEGMENT * segments) as f64;
+        let loses = iteration.residuals.primal < NEARLY_FEASIBLE && iteration.objective - gap > self.to_beat;
+        if loses { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn look<const NX: usize, const NU: usize>(&self, transition: &Transition) -> Option<Examination>
@@ -273,6 +291,11 @@ impl<F> Attempt<'_, F> {
             }
         }
     }
+}
+
+/// Runge-Kutta steps a segment, where segments last `uniform` (s) on average; the longest about half as long again.
+fn substeps(uniform: f64, longest_step: f64) -> usize {
+    (1.5 * uniform / longest_step).ceil().clamp(1.0, 64.0) as usize
 }
 
 /// The solution as it stands in the plan, without what only an examination can tell.
