@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mission::{Entries, Mission};
 use crate::options::Watch;
 use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
-use crate::transition::{Goal, Hint, Pilot, Unsolved};
+use crate::transition::{Draft, Goal, Hint, Pilot, Unsolved};
 use quad_dynamics::Motion;
 
 /// Candidates solved between two comparisons with the bounds. A constant, and not the number of threads, so that the same
@@ -23,11 +23,22 @@ pub(crate) struct Airspace<'a> {
     pub watch: Watch<'a>,
 }
 
-/// A solved candidate.
-#[derive(Clone)]
-struct Arrival {
+/// A solved candidate that is not flown yet.
+struct Drafted {
     /// Where in the list of candidates.
     index: usize,
+    entry: Entry,
+    draft: Draft,
+}
+
+impl Drafted {
+    fn duration(&self) -> f64 {
+        self.draft.transition.duration
+    }
+}
+
+/// The candidate that is flown.
+struct Arrival {
     entry: Entry,
     transition: Transition,
 }
@@ -76,7 +87,7 @@ impl Airspace<'_> {
             if self.watch.should_stop() {
                 return Err(Error::Stopped);
             }
-            let Some(Arrival { entry, transition, .. }) = arrival else {
+            let Some(Arrival { entry, transition }) = arrival else {
                 return Err(Error::Leg { vehicle, leg: legs.len(), circle: Some(circle), candidates });
             };
             here = orbit.exit(entry);
@@ -97,9 +108,9 @@ impl Airspace<'_> {
     fn to_entry(&self, here: &Motion, orbit: &Orbit, entry: Entry) -> (Option<Arrival>, Vec<Candidate>) {
         let there = orbit.at(entry);
         let hint = Hint::Time(self.envelope.least_time_between(here, &there));
-        let solved = self.pilot.fly(here, Goal::Motion(there), &there, hint, f64::INFINITY);
-        let mut candidates = vec![Candidate { entry: Some(entry), outcome: outcome_of(&solved) }];
-        let arrival = solved.ok().map(|transition| Arrival { index: 0, entry, transition });
+        let solved = self.pilot.fly(here, Goal::Motion(there), &there, hint);
+        let mut candidates = vec![Candidate { entry: Some(entry), outcome: outcome_of(solved.as_ref()) }];
+        let arrival = solved.ok().map(|transition| Arrival { entry, transition });
         let freed = match (self.mission.transition.entries, &arrival) {
             (Entries::Free, Some(arrival)) => self.freed(here, orbit, arrival, &mut candidates),
             _ => None,
@@ -120,7 +131,7 @@ impl Airspace<'_> {
             reached => reached,
         };
         match arrival {
-            Some(Arrival { entry, transition, .. }) => (Some(transition), entry, candidates),
+            Some(Arrival { entry, transition }) => (Some(transition), entry, candidates),
             None => (None, entry, candidates),
         }
     }
@@ -143,46 +154,75 @@ impl Airspace<'_> {
                 outcome: Outcome::ProvenWorse { lower_bound: entrance.lower_bound },
             })
             .collect();
-        let mut arrivals: Vec<Arrival> = Vec::new();
+        let mut drafted: Vec<Drafted> = Vec::new();
         for batch in entry::by_promise(&entrances).chunks(BATCH) {
             if self.watch.should_stop() {
                 break;
             }
-            let to_beat = fastest(&arrivals).map_or(f64::INFINITY, |arrival| arrival.transition.duration);
-            let promising = |&i: &usize| entrances[i].lower_bound < to_beat || self.watch.exhaustive();
+            let fastest = drafted.iter().map(Drafted::duration).fold(f64::INFINITY, f64::min);
+            let to_beat = if self.watch.exhaustive() { f64::INFINITY } else { fastest };
+            let promising = |&i: &usize| entrances[i].lower_bound < to_beat;
             let open: Vec<usize> = batch.iter().copied().filter(promising).collect();
-            let solved = self.solve_all(here, orbit, &entrances, &open, &arrivals, to_beat);
+            let solved = self.draft_all(here, orbit, &entrances, &open, &drafted, to_beat);
             self.watch.advance(batch.len());
             for (index, outcome) in open.into_iter().zip(solved) {
-                candidates[index].outcome = outcome_of(&outcome);
-                if let Ok(transition) = outcome {
-                    arrivals.push(Arrival { index, entry: entrances[index].entry, transition });
+                candidates[index].outcome = outcome_of(outcome.as_ref().map(|draft| &draft.transition));
+                if let Ok(draft) = outcome {
+                    drafted.push(Drafted { index, entry: entrances[index].entry, draft });
                 }
             }
         }
-        let Some(best) = fastest(&arrivals) else { return (None, candidates) };
+        let Some(best) = self.polish_fastest(here, orbit, drafted, &mut candidates) else {
+            return (None, candidates);
+        };
         let freed = match self.mission.transition.entries {
-            Entries::Free => self.freed(here, orbit, best, &mut candidates),
+            Entries::Free => self.freed(here, orbit, &best, &mut candidates),
             Entries::Sampled(_) => None,
         };
-        (freed.or_else(|| Some(best.clone())), candidates)
+        (Some(freed.unwrap_or(best)), candidates)
+    }
+
+    /// The fastest draft that can be flown. A draft is polished if it is faster than what has been polished before; of equals
+    /// the one that stands first in the list of candidates counts.
+    fn polish_fastest(
+        &self,
+        here: &Motion,
+        orbit: &Orbit,
+        mut drafted: Vec<Drafted>,
+        candidates: &mut [Candidate],
+    ) -> Option<Arrival> {
+        drafted.sort_by(|a, b| a.duration().total_cmp(&b.duration()).then_with(|| a.index.cmp(&b.index)));
+        let mut best: Option<Arrival> = None;
+        for Drafted { index, entry, draft } in drafted {
+            let to_beat = best.as_ref().map_or(f64::INFINITY, |best| best.transition.duration);
+            if draft.transition.duration >= to_beat && !self.watch.exhaustive() {
+                break;
+            }
+            let polished = self.pilot.polish(here, Goal::Motion(orbit.at(entry)), &draft);
+            candidates[index].outcome = outcome_of(polished.as_ref());
+            best = match polished {
+                Ok(transition) if transition.duration < to_beat => Some(Arrival { entry, transition }),
+                _ => best,
+            };
+        }
+        best
     }
 
     /// One candidate after the other, or side by side with the feature `rayon`; the results are in the order of `open`.
-    fn solve_all(
+    fn draft_all(
         &self,
         here: &Motion,
         orbit: &Orbit,
         entrances: &[Entrance],
         open: &[usize],
-        arrivals: &[Arrival],
+        drafted: &[Drafted],
         to_beat: f64,
-    ) -> Vec<Result<Transition, Unsolved>> {
+    ) -> Vec<Result<Draft, Unsolved>> {
         let solve = |&i: &usize| {
             let Entrance { entry, lower_bound } = entrances[i];
             let there = orbit.at(entry);
-            let hint = neighbour(arrivals, entry).map_or(Hint::Time(lower_bound), Hint::Neighbour);
-            self.pilot.fly(here, Goal::Motion(there), &there, hint, to_beat)
+            let hint = neighbour(drafted, entry).map_or(Hint::Time(lower_bound), Hint::Neighbour);
+            self.pilot.draft(here, Goal::Motion(there), &there, hint, to_beat)
         };
         #[cfg(feature = "rayon")]
         {
@@ -203,8 +243,9 @@ impl Airspace<'_> {
     ) -> Option<Arrival> {
         let goal = Goal::Circle(orbit, sampled.entry.direction);
         let hint = Hint::Neighbour(&sampled.transition);
-        let transition =
-            self.pilot.fly(here, goal, &orbit.at(sampled.entry), hint, sampled.transition.duration).ok()?;
+        let to_beat = sampled.transition.duration;
+        let draft = self.pilot.draft(here, goal, &orbit.at(sampled.entry), hint, to_beat).ok()?;
+        let transition = self.pilot.polish(here, goal, &draft).ok()?;
         if transition.duration >= sampled.transition.duration {
             return None;
         }
@@ -215,49 +256,37 @@ impl Airspace<'_> {
             entry: Some(entry),
             outcome: Outcome::Solved { duration: transition.duration },
         });
-        Some(Arrival { index: candidates.len() - 1, entry, transition })
+        Some(Arrival { entry, transition })
     }
 
     pub(crate) fn to_pad(&self, here: &Motion, pad: [f64; 3]) -> (Option<Transition>, Vec<Candidate>) {
         let there = self.landing(pad);
-        let solved = self.pilot.fly(
-            here,
-            Goal::Hover(there),
-            &there,
-            Hint::Time(self.least_time(here, &there)),
-            f64::INFINITY,
-        );
-        let outcome = outcome_of(&solved);
+        let hint = Hint::Time(self.least_time(here, &there));
+        let solved = self.pilot.fly(here, Goal::Hover(there), &there, hint);
+        let outcome = outcome_of(solved.as_ref());
         (solved.ok(), vec![Candidate { entry: None, outcome }])
     }
 }
 
-fn outcome_of(solved: &Result<Transition, Unsolved>) -> Outcome {
-    match *solved {
-        Ok(ref transition) => Outcome::Solved { duration: transition.duration },
-        Err(Unsolved { primal_residual, dual_residual }) => {
+fn outcome_of(solved: Result<&Transition, &Unsolved>) -> Outcome {
+    match solved {
+        Ok(transition) => Outcome::Solved { duration: transition.duration },
+        Err(&Unsolved { primal_residual, dual_residual }) => {
             Outcome::Failed { primal_residual, dual_residual }
         }
     }
 }
 
-/// The fastest arrival; of equals the one that stands first in the list of candidates.
-fn fastest(arrivals: &[Arrival]) -> Option<&Arrival> {
-    arrivals.iter().min_by(|a, b| {
-        a.transition.duration.total_cmp(&b.transition.duration).then_with(|| a.index.cmp(&b.index))
-    })
-}
-
 /// The solved transition whose entry is next to `entry` on the circle, in the same direction, up to an eighth of a turn away.
-fn neighbour(arrivals: &[Arrival], entry: Entry) -> Option<&Transition> {
-    let apart = |arrival: &Arrival| {
-        let turn = (arrival.entry.angle - entry.angle).rem_euclid(std::f64::consts::TAU);
+fn neighbour(drafted: &[Drafted], entry: Entry) -> Option<&Transition> {
+    let apart = |drafted: &Drafted| {
+        let turn = (drafted.entry.angle - entry.angle).rem_euclid(std::f64::consts::TAU);
         turn.min(std::f64::consts::TAU - turn)
     };
-    arrivals
+    drafted
         .iter()
-        .filter(|arrival| arrival.entry.direction == entry.direction)
-        .filter(|arrival| apart(arrival) <= std::f64::consts::FRAC_PI_4 + 1e-9)
+        .filter(|drafted| drafted.entry.direction == entry.direction)
+        .filter(|drafted| apart(drafted) <= std::f64::consts::FRAC_PI_4 + 1e-9)
         .min_by(|a, b| apart(a).total_cmp(&apart(b)).then_with(|| a.index.cmp(&b.index)))
-        .map(|arrival| &arrival.transition)
+        .map(|drafted| &drafted.draft.transition)
 }

@@ -17,7 +17,7 @@ mod solve;
 
 pub(crate) use examine::{Examination, miss};
 pub(crate) use problem::Goal;
-pub(crate) use solve::{Hint, Unsolved};
+pub(crate) use solve::{Draft, Hint, Unsolved};
 
 use crate::bound::Agility;
 use crate::circles::Orbit;
@@ -80,22 +80,39 @@ impl Pilot {
         with_flight!(&self.airframe, flight => flight.agility())
     }
 
-    /// The fastest transition to a goal; guesses lead `towards` (for a circle a promising entry). One slower than `to_beat` (s)
-    /// may overstep something between its knots.
+    /// The fastest transition to a goal; guesses lead `towards` (for a circle a promising entry).
     pub(crate) fn fly(
         &self,
         start: &Motion,
         goal: Goal,
         towards: &Motion,
         hint: Hint,
-        to_beat: f64,
     ) -> Result<Transition, Unsolved> {
-        let surroundings = Surroundings {
-            keep_outs: &self.keep_outs,
-            heights: self.settings.heights,
-            settings: &self.settings,
-        };
-        with_flight!(&self.airframe, flight => solve::fly(flight, start, goal, towards, hint, &surroundings, to_beat))
+        let draft = self.draft(start, goal, towards, hint, f64::INFINITY)?;
+        self.polish(start, goal, &draft)
+    }
+
+    /// The same, only to learn how fast it is; given up early if it takes longer than `to_beat` (s).
+    pub(crate) fn draft(
+        &self,
+        start: &Motion,
+        goal: Goal,
+        towards: &Motion,
+        hint: Hint,
+        to_beat: f64,
+    ) -> Result<Draft, Unsolved> {
+        let surroundings = self.surroundings();
+        with_flight!(&self.airframe, flight => solve::draft(flight, start, goal, towards, hint, &surroundings, to_beat))
+    }
+
+    /// The transition of a draft as it can be flown.
+    pub(crate) fn polish(&self, start: &Motion, goal: Goal, draft: &Draft) -> Result<Transition, Unsolved> {
+        let surroundings = self.surroundings();
+        with_flight!(&self.airframe, flight => solve::polish(flight, start, goal, draft, &surroundings))
+    }
+
+    fn surroundings(&self) -> Surroundings<'_> {
+        Surroundings { keep_outs: &self.keep_outs, heights: self.settings.heights, settings: &self.settings }
     }
 
     /// The transition as an independent integration of its controls sees it; `None` if it is malformed.

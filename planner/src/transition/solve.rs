@@ -7,7 +7,9 @@ use super::problem::{Goal, KeepOut, MinimumTime};
 use crate::mission::{Transcription, TransitionSettings};
 use crate::plan::{Entry, Miss, SolverStatus, Transition};
 use quad_dynamics::Motion;
+use std::any::Any;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use traj_opt::{Guess, Iteration, Mesh, Options, Solution, Status, Workspace};
 
 /// Misses (m, m/s, rad) above this are worth a finer integration inside the transcription: a tenth of what is tolerated.
@@ -62,10 +64,35 @@ impl Unsolved {
     const NOTHING: Self = Self { primal_residual: f64::INFINITY, dual_residual: f64::INFINITY };
 }
 
+/// A solved transition that is not flown yet: solved with few Runge-Kutta steps, clear of every keep-out. It tells how fast the
+/// flight is, to 2e-4.
+#[derive(Clone)]
+pub(crate) struct Draft {
+    pub transition: Transition,
+    /// The [`Solved`] of the model at hand.
+    solved: Arc<dyn Any + Send + Sync>,
+}
+
+/// A solution with all that led to it.
+#[derive(Clone)]
+struct Solved<const NX: usize, const NU: usize> {
+    solution: Solution<NX, NU>,
+    setting: Setting,
+    transition: Transition,
+    /// Between the knots; `None` if it loses and was not looked at.
+    seen: Option<Examination>,
+}
+
+impl<const NX: usize, const NU: usize> From<Solved<NX, NU>> for Draft {
+    fn from(solved: Solved<NX, NU>) -> Self {
+        Self { transition: solved.transition.clone(), solved: Arc::new(solved) }
+    }
+}
+
 /// The fastest transition from `start` to `goal` found from several guesses; `towards` is where guesses lead (for a
 /// circle a promising entry). One that takes longer than `to_beat` (s) is returned as soon as that is clear, as the solver left
 /// it: neither solved to the end, nor looked at between the knots.
-pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
+pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     flight: &F,
     start: &Motion,
     goal: Goal,
@@ -73,7 +100,7 @@ pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     hint: Hint,
     surroundings: &Surroundings,
     to_beat: f64,
-) -> Result<Transition, Unsolved> {
+) -> Result<Draft, Unsolved> {
     let mut unsolved = Unsolved::NOTHING;
     let attempt =
         Attempt { flight, start, goal, surroundings, to_beat, segments: surroundings.settings.segments };
@@ -81,9 +108,9 @@ pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         Hint::Time(about) => about,
         Hint::Neighbour(neighbour) => {
             if let Some(first) = bent(flight, neighbour, towards)
-                && let Ok(transition) = attempt.refine(first, attempt.near(towards))
+                && let Ok(solved) = attempt.keep_clear(first, attempt.near(towards))
             {
-                return Ok(transition);
+                return Ok(solved.into());
             }
             neighbour.duration
         }
@@ -93,13 +120,34 @@ pub(crate) fn fly<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         let keep_outs = attempt.near(towards);
         let free_yaw = matches!(goal, Goal::Hover(_));
         let first = guess(flight, start, towards, &keep_outs, stretch * about + 0.3, straight, free_yaw);
-        match attempt.refine(first, keep_outs) {
-            Ok(transition) => return Ok(transition),
+        match attempt.keep_clear(first, keep_outs) {
+            Ok(solved) => return Ok(solved.into()),
             Err(residuals) if residuals.primal_residual <= unsolved.primal_residual => unsolved = residuals,
             Err(_) => {}
         }
     }
     Err(unsolved)
+}
+
+/// The transition of a draft as it can be flown: solved again, finer and with what was overstepped put farther away, until its
+/// controls lead where they should.
+pub(crate) fn polish<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
+    flight: &F,
+    start: &Motion,
+    goal: Goal,
+    draft: &Draft,
+    surroundings: &Surroundings,
+) -> Result<Transition, Unsolved> {
+    let Some(solved) = draft.solved.downcast_ref::<Solved<NX, NU>>() else { return Err(Unsolved::NOTHING) };
+    let attempt = Attempt {
+        flight,
+        start,
+        goal,
+        surroundings,
+        to_beat: f64::INFINITY,
+        segments: surroundings.settings.segments,
+    };
+    attempt.mend(solved.clone())
 }
 
 /// Where a solve starts: at a trajectory, or at a solution on the same mesh with its multipliers. The latter only pays where
@@ -110,6 +158,7 @@ enum First<const NX: usize, const NU: usize> {
 }
 
 /// What may change from one solve of a transition to the next.
+#[derive(Clone)]
 struct Setting {
     keep_outs: Vec<KeepOut>,
     heights: [f64; 2],
@@ -150,63 +199,96 @@ impl<F> Attempt<'_, F> {
         self.surroundings.keep_outs.iter().filter(near).copied().collect()
     }
 
-    /// Solves, examines the result between the knots, and solves again with what was overstepped put farther away.
-    fn refine<const NX: usize, const NU: usize>(
+    /// Solves, and solves again while a keep-out is entered between the knots.
+    fn keep_clear<const NX: usize, const NU: usize>(
         &self,
         first: Guess<NX, NU>,
         keep_outs: Vec<KeepOut>,
-    ) -> Result<Transition, Unsolved>
+    ) -> Result<Solved<NX, NU>, Unsolved>
     where
         F: Flight<NX, NU>,
     {
-        let mut setting = Setting {
+        let setting = Setting {
             keep_outs,
             heights: self.surroundings.heights,
             longest_step: LONGEST_FIRST_STEP,
             segments: self.segments,
         };
-        let mut residuals = Unsolved::NOTHING;
-        let mut first = First::Guess(first);
+        let mut solved = self.solved(First::Guess(first), setting)?;
+        for _ in 1..MOST_ROUNDS {
+            let Solved { ref mut setting, ref seen, .. } = solved;
+            if !seen.is_some_and(|seen| self.put_farther(setting, &seen)) {
+                return Ok(solved);
+            }
+            solved = self.solved(First::Solution(Box::new(solved.solution)), solved.setting)?;
+        }
+        Err(unsolved(&solved.solution))
+    }
+
+    /// Solves again, each time stricter, until nothing is overstepped any more.
+    fn mend<const NX: usize, const NU: usize>(
+        &self,
+        mut solved: Solved<NX, NU>,
+    ) -> Result<Transition, Unsolved>
+    where
+        F: Flight<NX, NU>,
+    {
         for round in 1..=MOST_ROUNDS {
-            let Some(solution) = self.solve(&first, &setting) else { return Err(residuals) };
-            residuals = Unsolved {
-                primal_residual: solution.residuals.primal,
-                dual_residual: solution.residuals.dual.max(solution.residuals.complementarity),
-            };
-            // Only a candidate that loses is stopped.
-            if !solution.status.is_success() && solution.status != Status::Stopped {
-                return Err(residuals);
-            }
-            let mut transition = record::<NX, NU, F>(&solution);
-            if transition.duration > self.to_beat {
-                return Ok(transition);
-            }
-            let Some(seen) = self.look(&transition) else { return Err(residuals) };
-            complete(&mut transition, &seen, self.miss(&solution, &seen.end));
-            let clear = seen.clearance >= 0.0;
+            let Solved { solution, mut setting, transition, seen } = solved;
+            let Some(seen) = seen else { return Err(unsolved(&solution)) };
             let segments = setting.segments;
-            if !self.adjust(&mut setting, &transition, &seen) || (round >= ROUNDS && clear) {
+            let stricter = self.adjust(&mut setting, &transition, &seen);
+            if !stricter || (round >= ROUNDS && seen.clearance >= 0.0) {
                 return Ok(transition);
             }
-            first = if setting.segments == segments {
+            let first = if setting.segments == segments {
                 let substeps = substeps(transition.duration / segments as f64, setting.longest_step);
                 First::Solution(Box::new(solution.with_substeps(substeps)))
             } else {
                 First::Guess(Guess::from_solution(&solution, 1))
             };
+            solved = self.solved(first, setting)?;
         }
-        Err(residuals)
+        Err(unsolved(&solved.solution))
+    }
+
+    /// Solves once, and looks at the result between the knots unless it loses.
+    fn solved<const NX: usize, const NU: usize>(
+        &self,
+        first: First<NX, NU>,
+        setting: Setting,
+    ) -> Result<Solved<NX, NU>, Unsolved>
+    where
+        F: Flight<NX, NU>,
+    {
+        let solution = self.solve(&first, &setting).ok_or(Unsolved::NOTHING)?;
+        // Only a candidate that loses is stopped.
+        if !solution.status.is_success() && solution.status != Status::Stopped {
+            return Err(unsolved(&solution));
+        }
+        let mut transition = record::<NX, NU, F>(&solution);
+        if transition.duration > self.to_beat {
+            return Ok(Solved { solution, setting, transition, seen: None });
+        }
+        let seen = self.look(&transition).ok_or_else(|| unsolved(&solution))?;
+        complete(&mut transition, &seen, self.miss(&solution, &seen.end));
+        Ok(Solved { solution, setting, transition, seen: Some(seen) })
+    }
+
+    /// Puts the keep-out that is entered farthest away; false if none is entered.
+    fn put_farther(&self, setting: &mut Setting, seen: &Examination) -> bool {
+        match seen.closest {
+            Some(closest) if seen.clearance < 0.0 => {
+                enlarge(&mut setting.keep_outs, self.surroundings.keep_outs[closest], -seen.clearance);
+                true
+            }
+            _ => false,
+        }
     }
 
     /// Makes the setting stricter where the examination saw something overstepped; false if there was nothing.
     fn adjust(&self, setting: &mut Setting, transition: &Transition, seen: &Examination) -> bool {
-        let mut again = false;
-        if seen.clearance < 0.0
-            && let Some(closest) = seen.closest
-        {
-            enlarge(&mut setting.keep_outs, self.surroundings.keep_outs[closest], -seen.clearance);
-            again = true;
-        }
+        let mut again = self.put_farther(setting, seen);
         // A collocation scheme is judged by its own equations, and its miss is what the caller asked to see.
         if self.surroundings.settings.transcription != Transcription::RungeKutta {
             return again;
@@ -290,6 +372,14 @@ impl<F> Attempt<'_, F> {
                 miss(F::MODEL, end, &orbit.at(entry), false)
             }
         }
+    }
+}
+
+/// Residuals of a solve that is of no use.
+fn unsolved<const NX: usize, const NU: usize>(solution: &Solution<NX, NU>) -> Unsolved {
+    Unsolved {
+        primal_residual: solution.residuals.primal,
+        dual_residual: solution.residuals.dual.max(solution.residuals.complementarity),
     }
 }
 
