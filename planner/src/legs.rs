@@ -57,15 +57,27 @@ impl Airspace<'_> {
         Ok(legs)
     }
 
-    /// Flies a route by given entries, one per circle; with [`Entries::Free`] each is where the search starts.
+    /// Flies a route by given entries, one per circle; with [`Entries::Free`] each is where the search starts. Where two
+    /// consecutive entries are those of `known` legs of the same route, the known leg is flown.
     pub(crate) fn fly_entries(
         &self,
         vehicle: usize,
         pad: [f64; 3],
         route: &[usize],
         entries: &[Entry],
+        known: &[Leg],
     ) -> Result<Vec<Leg>, Error> {
-        self.fly_by(vehicle, pad, route, |index, here, orbit| self.to_entry(here, orbit, entries[index]))
+        let same = |index: usize| {
+            known.get(index).and_then(|leg| leg.loiter).map(|loiter| loiter.entry) == Some(entries[index])
+        };
+        self.fly_by(vehicle, pad, route, |index, here, orbit| {
+            if same(index) && (index == 0 || same(index - 1)) {
+                let Leg { ref transition, ref candidates, .. } = known[index];
+                let arrival = Arrival { entry: entries[index], transition: transition.clone() };
+                return (Some(arrival), candidates.clone());
+            }
+            self.to_entry(here, orbit, entries[index])
+        })
     }
 
     fn fly_by(

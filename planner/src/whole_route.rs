@@ -47,7 +47,7 @@ impl Airspace<'_> {
         if legs.iter().zip(&entries).all(|(leg, entry)| same(leg, entry)) {
             return Ok(legs);
         }
-        match self.fly_entries(vehicle, pad, route, &entries) {
+        match self.fly_entries(vehicle, pad, route, &entries, &legs) {
             Ok(proposed) if time(&proposed) < time(&legs) => Ok(proposed),
             Err(Error::Stopped) => Err(Error::Stopped),
             _ => Ok(legs),

@@ -27,8 +27,8 @@ const FIRST_MU: f64 = 0.01;
 /// Longest Runge-Kutta step of a first solve (s). Segments are short where the attitude turns, so that even the longest flights
 /// take as long as with fine steps to 2e-4 of their time: enough to see that a candidate loses.
 const LONGEST_FIRST_STEP: f64 = 1.0;
-/// The same of a transition that is flown (s): at 6 rad/s its error in attitude is about 1e-4 rad.
-const LONGEST_STEP: f64 = 0.08;
+/// The same of a transition that is flown (s): at 6 rad/s its error in attitude is about 2e-4 rad.
+const LONGEST_STEP: f64 = 0.16;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
 
