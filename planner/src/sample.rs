@@ -3,9 +3,10 @@
 use crate::circles::{Orbit, orbits};
 use crate::mission::Mission;
 use crate::plan::{Leg, Phase, Plan, Sample};
-use crate::transition::{Pilot, hover};
+use crate::transition::{Path, Pilot, hover};
 use quad_dynamics::Motion;
 use quad_dynamics::frames::to_wxyz;
+use std::sync::OnceLock;
 
 /// A plan together with what its mission says of vehicle and circles, ready to be asked for moments.
 pub(crate) struct Sampler<'a> {
@@ -13,6 +14,8 @@ pub(crate) struct Sampler<'a> {
     mission: &'a Mission,
     orbits: Vec<Orbit>,
     pilot: Pilot,
+    /// The transition of every leg of every vehicle, integrated when it is first asked for.
+    paths: Vec<Vec<OnceLock<Option<Path>>>>,
 }
 
 impl<'a> Sampler<'a> {
@@ -23,7 +26,9 @@ impl<'a> Sampler<'a> {
             return None;
         }
         let pilot = Pilot::new(mission, &orbits);
-        Some(Self { plan, mission, orbits, pilot })
+        let paths =
+            plan.vehicles.iter().map(|planned| planned.legs.iter().map(|_| OnceLock::new()).collect());
+        Some(Self { plan, mission, orbits, pilot, paths: paths.collect() })
     }
 
     /// The moment `time` (s after the mission's start) of a vehicle; hover on its pad before and after its flight.
@@ -48,18 +53,24 @@ impl<'a> Sampler<'a> {
         let k = planned.legs.partition_point(|leg| leg.start_time <= time).saturating_sub(1);
         let flown = planned.legs.get(k).filter(|leg| time >= leg.start_time && time <= leg.end_time());
         flown
-            .and_then(|leg| self.in_leg(leg, time))
+            .and_then(|leg| self.in_leg(leg, &self.paths[vehicle][k], time))
             .unwrap_or_else(|| (hover(self.mission, planned.pad, planned.heading), Phase::Pad, None))
     }
 
-    fn in_leg(&self, leg: &Leg, time: f64) -> Option<(Motion, Phase, Option<usize>)> {
+    fn in_leg(
+        &self,
+        leg: &Leg,
+        path: &OnceLock<Option<Path>>,
+        time: f64,
+    ) -> Option<(Motion, Phase, Option<usize>)> {
         match leg.loiter {
             Some(loiter) if time >= leg.arrival_time() => {
                 let motion = self.orbits.get(loiter.circle)?.after(loiter.entry, time - leg.arrival_time());
                 Some((motion, Phase::Loiter, Some(loiter.circle)))
             }
             _ => {
-                let motion = self.pilot.motion(&leg.transition, time - leg.start_time)?;
+                let path = path.get_or_init(|| self.pilot.path(&leg.transition)).as_ref()?;
+                let motion = path(time - leg.start_time);
                 Some((motion, Phase::Transition, leg.loiter.map(|loiter| loiter.circle)))
             }
         }

@@ -40,12 +40,13 @@ pub(crate) fn in_the_air<R>(
     Some(ask(fleet))
 }
 
-/// The least distance between two vehicles while both fly, to within [`RESOLUTION`]; `None` if they never fly together.
+/// Time and least distance of two vehicles while both fly, to within [`RESOLUTION`]; `None` if they never fly together or never
+/// come closer than `to_beat` (m).
 ///
 /// The distance `d` of two points changes by at most `L = v_1 + v_2` per second, so over `[a, b]` it is at least
 /// `(d(a) + d(b) - L (b - a))/2`. Intervals whose bound is within the resolution of the best distance seen are dropped,
 /// the others are halved: no encounter can hide between samples.
-pub(crate) fn closest_approach(first: &Airborne, second: &Airborne) -> Option<(f64, f64)> {
+pub(crate) fn closest_approach(first: &Airborne, second: &Airborne, to_beat: f64) -> Option<(f64, f64)> {
     let start = first.flight[0].max(second.flight[0]);
     let end = first.flight[1].min(second.flight[1]);
     if start > end {
@@ -57,7 +58,12 @@ pub(crate) fn closest_approach(first: &Airborne, second: &Airborne) -> Option<(f
         (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
     };
     let (at_start, at_end) = (distance(start), distance(end));
-    let mut best = if at_start <= at_end { (start, at_start) } else { (end, at_end) };
+    let mut best = (start, to_beat);
+    for (time, distance) in [(start, at_start), (end, at_end)] {
+        if distance < best.1 {
+            best = (time, distance);
+        }
+    }
     let mut open = vec![([start, end], [at_start, at_end])];
     while let Some(([a, b], [at_a, at_b])) = open.pop() {
         let lower_bound = 0.5 * (at_a + at_b - lipschitz * (b - a));
@@ -72,7 +78,7 @@ pub(crate) fn closest_approach(first: &Airborne, second: &Airborne) -> Option<(f
         open.push(([middle, b], [at_middle, at_b]));
         open.push(([a, middle], [at_a, at_middle]));
     }
-    Some(best)
+    (best.1 < to_beat).then_some(best)
 }
 
 /// The closest approach over all pairs, vehicles named by their index in `fleet`; `None` entries do not fly.
@@ -81,8 +87,8 @@ pub(crate) fn closest_pair(fleet: &[Option<Airborne>]) -> Option<Approach> {
     for (i, first) in fleet.iter().enumerate() {
         for (j, second) in fleet.iter().enumerate().skip(i + 1) {
             let (Some(first), Some(second)) = (first, second) else { continue };
-            let Some((time, distance)) = closest_approach(first, second) else { continue };
-            if closest.is_none_or(|best| distance < best.distance) {
+            let to_beat = closest.map_or(f64::INFINITY, |best| best.distance);
+            if let Some((time, distance)) = closest_approach(first, second, to_beat) {
                 closest = Some(Approach { vehicles: [i, j], time, distance });
             }
         }
@@ -168,7 +174,7 @@ mod tests {
             top_speed: 100.0,
         };
         let (first, second) = (airborne(Box::new(first)), airborne(Box::new(second)));
-        let (time, distance) = closest_approach(&first, &second).unwrap();
+        let (time, distance) = closest_approach(&first, &second, f64::INFINITY).unwrap();
         assert!((time - meeting).abs() < 1e-4, "{time}");
         assert!((0.5 - distance).abs() <= RESOLUTION, "{distance}");
     }
@@ -194,6 +200,6 @@ mod tests {
     fn vehicles_that_never_fly_together_have_no_approach() {
         let still = |flight| Airborne { position: Box::new(|_| [0.0; 3]), flight, top_speed: 0.0 };
         let (first, second) = (still([0.0, 1.0]), still([2.0, 3.0]));
-        assert_eq!(closest_approach(&first, &second), None);
+        assert_eq!(closest_approach(&first, &second, f64::INFINITY), None);
     }
 }

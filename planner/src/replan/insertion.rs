@@ -23,14 +23,13 @@ pub(super) fn cheapest(
     target: usize,
 ) -> Option<Place> {
     let rounds = Rounds { airspace, model, plan };
-    let ends: Vec<f64> = (0..team.len()).map(|vehicle| rounds.end(vehicle, &team[vehicle])).collect();
+    let ends: Vec<f64> =
+        (0..team.len()).map(|vehicle| rounds.end(vehicle, &team[vehicle], &team[vehicle].open)).collect();
     let makespan = ends.iter().copied().fold(0.0, f64::max);
     let mut best: Option<([f64; 2], Place)> = None;
     for (vehicle, settled) in team.iter().enumerate().filter(|&(i, settled)| usable[i] && !settled.landed) {
         for position in 0..=settled.open.len() {
-            let mut longer = settled.clone();
-            longer.open.insert(position, target);
-            let end = rounds.end(vehicle, &longer);
+            let end = rounds.end(vehicle, settled, &with(&settled.open, position, target));
             let added = end - ends[vehicle];
             let cost = match airspace.mission.objective {
                 Objective::Makespan => [end.max(makespan), added],
@@ -54,20 +53,20 @@ pub(super) fn relieve(
 ) {
     let rounds = Rounds { airspace, model, plan };
     loop {
-        let ends: Vec<f64> = (0..team.len()).map(|vehicle| rounds.end(vehicle, &team[vehicle])).collect();
+        let ends: Vec<f64> =
+            (0..team.len()).map(|vehicle| rounds.end(vehicle, &team[vehicle], &team[vehicle].open)).collect();
         let Some(last) = (0..team.len()).max_by(|&a, &b| ends[a].total_cmp(&ends[b])) else { return };
         if last == helper {
             return;
         }
         let mut best = (ends[last] * (1.0 - 1e-9), None);
         for from in 0..team[last].open.len() {
-            let mut shorter = team[last].clone();
-            let circle = shorter.open.remove(from);
-            let left = rounds.end(last, &shorter);
+            let mut shorter = team[last].open.clone();
+            let circle = shorter.remove(from);
+            let left = rounds.end(last, &team[last], &shorter);
             for position in 0..=team[helper].open.len() {
-                let mut longer = team[helper].clone();
-                longer.open.insert(position, circle);
-                let end = left.max(rounds.end(helper, &longer));
+                let longer = with(&team[helper].open, position, circle);
+                let end = left.max(rounds.end(helper, &team[helper], &longer));
                 if end < best.0 {
                     best = (end, Some((from, position)));
                 }
@@ -79,6 +78,13 @@ pub(super) fn relieve(
     }
 }
 
+/// A route with a circle put in.
+fn with(open: &[usize], position: usize, circle: usize) -> Vec<usize> {
+    let mut longer = open.to_vec();
+    longer.insert(position, circle);
+    longer
+}
+
 /// Modelled flights from circle to circle.
 struct Rounds<'a> {
     airspace: &'a Airspace<'a>,
@@ -87,15 +93,15 @@ struct Rounds<'a> {
 }
 
 impl Rounds<'_> {
-    /// When a vehicle would be back (s).
-    fn end(&self, vehicle: usize, settled: &Settled) -> f64 {
-        if settled.open.is_empty() && settled.here.is_none() {
+    /// When a vehicle would be back (s) that flies `open` circles after what is settled.
+    fn end(&self, vehicle: usize, settled: &Settled, open: &[usize]) -> f64 {
+        if open.is_empty() && settled.here.is_none() {
             return self.plan.vehicles[vehicle].end_time().min(settled.time);
         }
         let pad = self.plan.vehicles[vehicle].pad;
         let mut here = settled.here.map_or([pad[0], pad[1]], |motion| [motion.position.x, motion.position.y]);
         let mut time = settled.time;
-        for &circle in &settled.open {
+        for &circle in open {
             let there = &self.airspace.orbits[circle].circle;
             time += self.leg(here, there.centre, there.speed) + there.duration;
             here = there.centre;

@@ -122,6 +122,7 @@ impl Replanner {
         match *event {
             Event::TargetAppears(ref target) => {
                 changes.wanted.push(self.mission.targets.len());
+                changes.keep_outs.push(self.mission.targets.len());
                 self.mission.targets.push(target.clone());
             }
             Event::TargetVanishes(target) => {
@@ -137,10 +138,12 @@ impl Replanner {
                 if self.plan.skipped.contains(&target) || self.is_settled(target, time) {
                     // Nobody circles it there; others keep their distance.
                     self.plan.skipped.push(self.mission.targets.len());
+                    changes.keep_outs.push(self.mission.targets.len());
                     let moved = Target { position, ..self.mission.targets[target].clone() };
                     self.mission.targets.push(moved);
                 } else {
                     self.mission.targets[target].position = position;
+                    changes.keep_outs.push(target);
                     changes.gone.push(target);
                     changes.wanted.retain(|&waiting| waiting != target);
                     changes.wanted.push(target);
@@ -190,7 +193,7 @@ impl Replanner {
         let orbits = orbits(&self.mission).map_err(of_loiter)?;
         let airspace = airspace(&self.mission, &orbits);
         let mut team: Vec<Settled> = (0..self.plan.vehicles.len())
-            .map(|vehicle| Settled::at(&airspace, &self.plan.vehicles[vehicle], time, &changes.gone))
+            .map(|vehicle| Settled::at(&airspace, &self.plan.vehicles[vehicle], time, &changes))
             .collect();
         for settled in &mut team {
             settled.open.retain(|circle| !changes.gone.contains(circle));
@@ -214,7 +217,7 @@ impl Replanner {
                 vehicles.extend((lost == time).then_some(vehicle));
                 continue;
             }
-            let legs = refly::fly(&airspace, &self.model, vehicle, planned, settled, &changes.gone)?;
+            let legs = refly::fly(&airspace, &self.model, vehicle, planned, settled, &changes)?;
             if let Some(legs) = legs {
                 let planned = &mut self.plan.vehicles[vehicle];
                 planned.route = legs.iter().filter_map(|leg| Some(leg.loiter?.circle)).collect();
@@ -258,6 +261,8 @@ struct Changes {
     wanted: Vec<usize>,
     /// Targets that lose theirs.
     gone: Vec<usize>,
+    /// Targets whose safe distance is a new one.
+    keep_outs: Vec<usize>,
     /// A vehicle that can take targets from others.
     relieved_by: Option<usize>,
 }

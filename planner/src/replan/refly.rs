@@ -1,5 +1,6 @@
 //! The legs of a changed route.
 
+use super::Changes;
 use super::settled::{Settled, enters};
 use crate::entry;
 use crate::error::Error;
@@ -16,12 +17,13 @@ pub(super) fn fly(
     vehicle: usize,
     planned: &VehiclePlan,
     settled: Settled,
-    gone: &[usize],
+    changes: &Changes,
 ) -> Result<Option<Vec<Leg>>, Error> {
+    let gone = &changes.gone;
     let keeps = !settled.open.iter().any(|circle| gone.contains(circle))
         && planned.route.ends_with(&settled.open)
         && settled.legs.len() + settled.open.len() == planned.route.len()
-        && (settled.legs.len()..planned.legs.len()).all(|leg| !enters(airspace, planned, leg));
+        && (settled.legs.len()..planned.legs.len()).all(|leg| !enters(airspace, planned, leg, changes));
     if settled.landed || keeps {
         return Ok(None);
     }
@@ -36,7 +38,7 @@ pub(super) fn fly(
     for (&circle, &entry) in open.iter().zip(&entries) {
         let orbit = &airspace.orbits[circle];
         let stays = broken_off.is_none() && !gone.contains(&circle);
-        let kept = stays.then(|| unchanged(airspace, planned, &here, (circle, entry), gone)).flatten();
+        let kept = stays.then(|| unchanged(airspace, planned, &here, (circle, entry), changes)).flatten();
         let (transition, entry, candidates) = match kept {
             Some(leg) => (leg.transition.clone(), entry, leg.candidates.clone()),
             None => {
@@ -60,7 +62,7 @@ pub(super) fn fly(
         });
         same && leg.loiter.is_none()
             && broken_off.is_none()
-            && !enters(airspace, planned, planned.legs.len() - 1)
+            && !enters(airspace, planned, planned.legs.len() - 1, changes)
     });
     let (transition, candidates) = match kept {
         Some(leg) => (Some(leg.transition.clone()), leg.candidates.clone()),
@@ -114,18 +116,18 @@ fn unchanged<'a>(
     planned: &'a VehiclePlan,
     here: &Motion,
     (circle, entry): (usize, Entry),
-    gone: &[usize],
+    changes: &Changes,
 ) -> Option<&'a Leg> {
     let index = planned
         .legs
         .iter()
         .position(|leg| leg.loiter.is_some_and(|loiter| loiter.circle == circle && loiter.entry == entry))?;
     let start = match index.checked_sub(1).and_then(|before| planned.legs[before].loiter) {
-        Some(loiter) if gone.contains(&loiter.circle) => return None,
+        Some(loiter) if changes.gone.contains(&loiter.circle) => return None,
         Some(loiter) => airspace.orbits[loiter.circle].exit(loiter.entry),
         None => hover(airspace.mission, planned.pad, planned.heading),
     };
-    (start == *here && !enters(airspace, planned, index)).then(|| &planned.legs[index])
+    (start == *here && !enters(airspace, planned, index, changes)).then(|| &planned.legs[index])
 }
 
 /// A leg's start and its transition, with what was flown before it was broken off in front.

@@ -1,6 +1,6 @@
 //! What of a vehicle's flight is settled at a moment.
 
-use super::Replanner;
+use super::{Changes, Replanner};
 use crate::legs::Airspace;
 use crate::plan::{Leg, Transition, VehiclePlan};
 use crate::transition::hover;
@@ -23,8 +23,8 @@ pub(super) struct Settled {
 }
 
 impl Settled {
-    /// The flight of a vehicle as it is settled at `time`. Circles in `gone` are not flown to any longer.
-    pub(super) fn at(airspace: &Airspace, planned: &VehiclePlan, time: f64, gone: &[usize]) -> Self {
+    /// The flight of a vehicle as it is settled at `time`.
+    pub(super) fn at(airspace: &Airspace, planned: &VehiclePlan, time: f64, changes: &Changes) -> Self {
         let VehiclePlan { legs, route, .. } = planned;
         let untouched = |time: f64| Self {
             legs: Vec::new(),
@@ -45,14 +45,17 @@ impl Settled {
         let leg = &legs[k];
         let circle = leg.loiter.map(|loiter| loiter.circle);
         let in_transition = time < leg.arrival_time();
-        let must_turn =
-            || circle.is_some_and(|circle| gone.contains(&circle)) || enters(airspace, planned, k);
+        let must_turn = || {
+            circle.is_some_and(|circle| changes.gone.contains(&circle))
+                || enters(airspace, planned, k, changes)
+        };
         if in_transition && (circle.is_none() || must_turn()) {
             let earliest = time + Replanner::REACTION - leg.start_time;
             let knot = leg.transition.knots.partition_point(|&knot| knot < earliest);
             if knot + 1 < leg.transition.knots.len()
-                && let Some(here) = airspace.pilot.motion(&leg.transition, leg.transition.knots[knot])
+                && let Some(path) = airspace.pilot.path(&leg.transition)
             {
+                let here = path(leg.transition.knots[knot]);
                 return Self {
                     legs: legs[..k].to_vec(),
                     time: leg.start_time + leg.transition.knots[knot],
@@ -75,15 +78,34 @@ impl Settled {
     }
 }
 
-/// Whether a leg enters a safe distance, as targets lie now.
-pub(super) fn enters(airspace: &Airspace, planned: &VehiclePlan, leg: usize) -> bool {
+/// Whether a leg enters a safe distance that was not there when it was planned.
+pub(super) fn enters(airspace: &Airspace, planned: &VehiclePlan, leg: usize, changes: &Changes) -> bool {
+    let transition = &planned.legs[leg].transition;
+    let comes_near = |&&target: &&usize| {
+        let mission = airspace.mission;
+        least_distance(transition, mission.targets[target].position) < mission.safe_distance(target)
+    };
+    if changes.keep_outs.iter().find(comes_near).is_none() {
+        return false;
+    }
     let start = match leg.checked_sub(1).and_then(|before| planned.legs[before].loiter) {
         Some(loiter) => airspace.orbits[loiter.circle].exit(loiter.entry),
         None => hover(airspace.mission, planned.pad, planned.heading),
     };
-    let seen = airspace.pilot.examine(&planned.legs[leg].transition, &start);
+    let seen = airspace.pilot.examine(transition, &start);
     // What the plan was made with may have been grazed.
     seen.is_some_and(|seen| seen.clearance < -0.02)
+}
+
+/// A lower bound on the horizontal distance between a transition and a point (m): from one knot to the next neither end can
+/// be farther away than its own way to the nearest place.
+fn least_distance(transition: &Transition, [x, y]: [f64; 2]) -> f64 {
+    let distance = |state: &Vec<f64>| (state[0] - x).hypot(state[1] - y);
+    let ends = transition.states.windows(2).map(|pair| distance(&pair[0]) + distance(&pair[1]));
+    let times = transition.knots.windows(2).map(|pair| pair[1] - pair[0]);
+    ends.zip(times)
+        .map(|(ends, time)| 0.5 * (ends - transition.max_speed * time))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The segments of a transition before a knot.

@@ -169,23 +169,33 @@ pub(crate) fn miss(model: Model, end: &Motion, goal: &Motion, free_yaw: bool) ->
     }
 }
 
-/// The moment `time` (s) after the transition's start, integrated from the knot before it; `None` if the arrays do not fit.
-pub(crate) fn motion<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
+/// The motion at a time (s after the transition's start); held at both ends.
+pub(crate) type Path = Box<dyn Fn(f64) -> Motion + Send + Sync>;
+
+/// The transition as a function of time, integrated from knot to knot; `None` if the arrays do not fit.
+pub(crate) fn path<const NX: usize, const NU: usize, F: Flight<NX, NU> + Send + 'static>(
     flight: &F,
     transition: &Transition,
-    time: f64,
-) -> Option<Motion> {
+) -> Option<Path> {
     if !well_formed(transition, NX, NU) {
         return None;
     }
-    let last = transition.knots.len() - 2;
-    let k = transition.knots.partition_point(|&knot| knot <= time).saturating_sub(1).min(last);
-    let (from, to) = (transition.knots[k], transition.knots[k + 1]);
-    let time = time.clamp(from, to);
-    let at = |t: f64| control::<NU>(transition, k, ((t - from) / (to - from)).clamp(0.0, 1.0));
-    let knot = SVector::<f64, NX>::from_column_slice(&transition.states[k]);
-    let mut path = Trajectory::starting_at(from, knot);
     let options = IntegrateOptions::default().with_tolerance(1e-8);
-    path.extend(|t, x| flight.derivative(t, x, &at(t)), time, &options).ok()?;
-    Some(flight.motion(path.end_state(), &at(time)))
+    let mut segments = Vec::with_capacity(transition.knots.len() - 1);
+    for (k, pair) in transition.knots.windows(2).enumerate() {
+        let at = |t: f64| control::<NU>(transition, k, ((t - pair[0]) / (pair[1] - pair[0])).clamp(0.0, 1.0));
+        let knot = SVector::<f64, NX>::from_column_slice(&transition.states[k]);
+        let mut segment = Trajectory::starting_at(pair[0], knot);
+        segment.extend(|t, x| flight.derivative(t, x, &at(t)), pair[1], &options).ok()?;
+        segments.push(segment);
+    }
+    let (flight, transition) = (flight.clone(), transition.clone());
+    Some(Box::new(move |time| {
+        let k =
+            transition.knots.partition_point(|&knot| knot <= time).saturating_sub(1).min(segments.len() - 1);
+        let (from, to) = (transition.knots[k], transition.knots[k + 1]);
+        let time = time.clamp(from, to);
+        let control = control::<NU>(&transition, k, (time - from) / (to - from));
+        flight.motion(&segments[k].state_at(time), &control)
+    }))
 }

@@ -15,7 +15,7 @@ mod models;
 mod problem;
 mod solve;
 
-pub(crate) use examine::{Examination, miss};
+pub(crate) use examine::{Examination, Path, miss};
 pub(crate) use problem::Goal;
 pub(crate) use solve::{Draft, Hint, Unsolved};
 
@@ -121,9 +121,9 @@ impl Pilot {
         with_flight!(&self.airframe, flight => examine::examine(flight, transition, start, &self.keep_outs, heights))
     }
 
-    /// The motion `time` (s) after the transition's start; `None` if it is malformed.
-    pub(crate) fn motion(&self, transition: &Transition, time: f64) -> Option<Motion> {
-        with_flight!(&self.airframe, flight => examine::motion(flight, transition, time))
+    /// The transition as a function of time; `None` if it is malformed.
+    pub(crate) fn path(&self, transition: &Transition) -> Option<Path> {
+        with_flight!(&self.airframe, flight => examine::path(flight, transition))
     }
 }
 
