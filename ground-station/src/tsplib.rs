@@ -9,13 +9,15 @@ enum Kind {
     Euclidean,
     Ceiling,
     PseudoEuclidean,
+    Geographic,
     Explicit,
 }
 
-const KINDS: [(&str, Kind); 4] = [
+const KINDS: [(&str, Kind); 5] = [
     ("EUC_2D", Kind::Euclidean),
     ("CEIL_2D", Kind::Ceiling),
     ("ATT", Kind::PseudoEuclidean),
+    ("GEO", Kind::Geographic),
     ("EXPLICIT", Kind::Explicit),
 ];
 
@@ -149,6 +151,10 @@ impl Metric for Instance {
             (Kind::Ceiling, true) => euclidean.ceil(),
             (Kind::PseudoEuclidean, true) => (euclidean / 10f64.sqrt()).ceil(),
             (Kind::PseudoEuclidean, false) => euclidean / 10f64.sqrt(),
+            // By its formula a point would be a kilometre from itself.
+            (Kind::Geographic, true) if i == j => 0.0,
+            (Kind::Geographic, true) => (geographic(a, b) + 1.0).floor(),
+            (Kind::Geographic, false) => geographic(a, b),
             _ => euclidean,
         }
     }
@@ -158,13 +164,32 @@ impl Metric for Instance {
     }
 
     fn positions(&self) -> Geometry<'_> {
-        if self.kind == Kind::Explicit { Geometry::Abstract } else { Geometry::Planar(&self.points) }
+        let has_points = !matches!(self.kind, Kind::Explicit | Kind::Geographic);
+        if has_points { Geometry::Planar(&self.points) } else { Geometry::Abstract }
     }
 
     fn geometry(&self) -> Geometry<'_> {
         let is_plane = matches!(self.kind, Kind::Euclidean | Kind::Ceiling) && !self.is_rounded;
         if is_plane { Geometry::Planar(&self.points) } else { Geometry::Abstract }
     }
+}
+
+/// Great-circle distance (km) of two points in degrees and minutes (DDD.MM), by TSPLIB's formula with its values of pi and of
+/// the earth's radius.
+fn geographic(a: [f64; 2], b: [f64; 2]) -> f64 {
+    #[allow(clippy::approx_constant)]
+    const PI: f64 = 3.141592;
+    const EARTH_RADIUS: f64 = 6378.388;
+    let radians = |x: f64| {
+        let degrees = x.trunc();
+        PI * (degrees + 5.0 * (x - degrees) / 3.0) / 180.0
+    };
+    let [latitude, longitude] = a.map(radians);
+    let [other_latitude, other_longitude] = b.map(radians);
+    let q1 = (longitude - other_longitude).cos();
+    let q2 = (latitude - other_latitude).cos();
+    let q3 = (latitude + other_latitude).cos();
+    EARTH_RADIUS * (0.5 * ((1.0 + q1) * q2 - (1.0 - q1) * q3)).clamp(-1.0, 1.0).acos()
 }
 
 #[cfg(test)]
@@ -191,10 +216,23 @@ mod tests {
         Ok(())
     }
 
+    /// The first four places of TSPLIB's `ulysses16`; the distances are the first row of its matrix in the literature.
+    #[test]
+    fn geographic_distances_are_those_of_the_literature() -> Result<(), Problem> {
+        let text = "DIMENSION: 4\nEDGE_WEIGHT_TYPE: GEO\nNODE_COORD_SECTION\n\
+                    1 38.24 20.42\n2 39.57 26.15\n3 40.56 25.32\n4 36.26 23.12\nEOF\n";
+        let places = Instance::read("ulysses.tsp", text, true)?;
+        assert_eq!([0, 1, 2, 3].map(|j| places.distance(0, j)), [0.0, 509.0, 501.0, 312.0]);
+        let exact = Instance::read("ulysses.tsp", text, false)?;
+        assert!((508.0..509.0).contains(&exact.distance(0, 1)));
+        assert!(matches!(places.positions(), Geometry::Abstract));
+        Ok(())
+    }
+
     #[test]
     fn what_is_wrong_is_said() {
         for (from, to, wanted) in [
-            ("EUC_2D", "GEO", "EDGE_WEIGHT_TYPE GEO is not supported"),
+            ("EUC_2D", "MAN_2D", "EDGE_WEIGHT_TYPE MAN_2D is not supported"),
             ("3\nEDGE", "4\nEDGE", "4 points are announced, 3 found"),
             ("1.4", "inf", "not finite"),
             ("DIMENSION: 3", "DIMENSION: x", "DIMENSION is no whole number"),
