@@ -6,6 +6,9 @@ use crate::spanning_tree::Prim;
 /// Ascent steps at the root and at every other node of the search tree.
 const STEPS: [usize; 2] = [400, 40];
 
+/// Work after which the search gives up: nodes of the search tree times the square of the number of vertices. About four seconds.
+const MOST_WORK: usize = 50_000_000;
+
 /// What is decided about an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Status {
@@ -14,15 +17,23 @@ enum Status {
     Forbidden,
 }
 
-/// Search for a tour shorter than `cost`; returns a shortest tour, which is `order` if none is shorter.
+/// The best tour found, and a lower bound on all.
+pub(crate) struct Found {
+    pub order: Vec<usize>,
+    /// Infinite if the tour is a shortest one; else the least bound of what was left to search.
+    pub bound: f64,
+}
+
+/// Search for a tour shorter than `order`; returns a shortest one, which is `order` if none is shorter, or the best found when
+/// the search gives up.
 ///
 /// A node is cut off when its bound reaches the cost of the best tour less the rounding that either sum may carry.
 /// The `required` edges are in every tour considered, `order` included.
-pub(crate) fn search(metric: &impl Metric, order: Vec<usize>, required: &[(usize, usize)]) -> Vec<usize> {
+pub(crate) fn search(metric: &impl Metric, order: Vec<usize>, required: &[(usize, usize)]) -> Found {
     let n = order.len();
     let cost = crate::tour::tour_edges(&order).map(|(u, v)| metric.distance(u, v)).sum();
     if n < 4 {
-        return order;
+        return Found { order, bound: f64::INFINITY };
     }
     let distances: Vec<f64> = (0..n * n).map(|k| metric.distance(k / n, k % n)).collect();
     let mut search = Search::new(n, distances, order, cost);
@@ -31,22 +42,26 @@ pub(crate) fn search(metric: &impl Metric, order: Vec<usize>, required: &[(usize
         root.status[u * n + v] = Status::Required;
         root.status[v * n + u] = Status::Required;
     }
-    if !propagate(n, &mut root.status) {
-        return search.order;
+    let mut stack = Vec::new();
+    if propagate(n, &mut root.status) {
+        stack.push(root);
     }
-    let mut stack = vec![root];
-    let mut is_root = true;
+    let mut nodes = 0;
     while let Some(mut node) = stack.pop() {
         if node.bound >= search.limit() {
             continue;
         }
-        search.ascend(&mut node, STEPS[usize::from(!is_root)]);
-        is_root = false;
+        if nodes * n * n > MOST_WORK {
+            let bound = stack.iter().map(|open| open.bound).fold(node.bound, f64::min);
+            return Found { order: search.order, bound: bound.max(0.0) };
+        }
+        search.ascend(&mut node, STEPS[nodes.min(1)]);
+        nodes += 1;
         if node.bound < search.limit() {
             search.branch(&node, &mut stack);
         }
     }
-    search.order
+    Found { order: search.order, bound: f64::INFINITY }
 }
 
 struct Node {
