@@ -48,7 +48,8 @@ impl VehicleParameters {
     ///
     /// J. Förster, *System Identification of the Crazyflie 2.0 Nano Quadrocopter* (ETH Zürich 2015): mass, full inertia
     /// tensor, thrust at full command (0.0915 + 0.0677 N a rotor), torque to thrust, rotor drag. Motor time constant 72 ms:
-    /// J. Eschmann et al. (2024, arXiv:2404.07837). Body rates: limits in the vehicle's usual firmware use, not identified.
+    /// J. Eschmann et al. (2024, arXiv:2404.07837). Assumed, not identified: body rates, rotor radius (45 mm propellers), rotor
+    /// efficiency, the 240 mA h of the battery as it is sold, avionics power.
     #[must_use]
     pub fn crazyflie() -> Self {
         let inertia_tensor = [
@@ -83,7 +84,8 @@ impl VehicleParameters {
     ///
     /// N. Michael, D. Mellinger, Q. Lindsey, V. Kumar, *The GRASP Multiple Micro-UAV Testbed* (IEEE Robotics and
     /// Automation Magazine 2010): mass, arm 0.17 m, thrust 6.11e-8 N/rpm^2, torque 1.5e-9 N m/rpm^2, 1200 to 7800 rpm,
-    /// motor gain 20/s. Inertia and drag as in RotorPy 2.1 (Folk, Paulos, Kumar 2023), after J. Svacha et al. (2017).
+    /// motor gain 20/s. Inertia and drag as in RotorPy 2.1 (Folk, Paulos, Kumar 2023), after J. Svacha et al. (2017). Assumed, not
+    /// identified: body rates, rotor radius (8-inch propellers), rotor efficiency, battery (11.1 V, 2.1 A h), avionics power.
     #[must_use]
     pub fn hummingbird() -> Self {
         let per_minute = std::f64::consts::TAU / 60.0;
@@ -115,7 +117,8 @@ impl VehicleParameters {
     /// The vehicle of the Robotics and Perception Group, Zürich: L. Bauersfeld et al., *NeuroBEM* (2021) and P. Foehn et
     /// al., *Agilicious* (2022): mass, inertia diag(2.5, 2.1, 4.3) g m^2, rotors at (±0.075, ±0.10) m, 8.5 N a rotor,
     /// thrust 1.562522e-6 N s^2, torque to thrust 0.022 m, motor lag 33 ms, body rates 10, 10, 4 rad/s. They model
-    /// the drag by blade elements and a network, so there is no drag coefficient to take over.
+    /// the drag by blade elements and a network, so there is no drag coefficient to take over. Assumed, not identified: least
+    /// thrust, rotor radius (5.1-inch propellers), rotor efficiency, battery (14.8 V, 1.5 A h), avionics power.
     #[must_use]
     pub fn racing() -> Self {
         let rotor = |x: f64, y: f64| {

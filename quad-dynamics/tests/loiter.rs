@@ -2,29 +2,15 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+mod common;
+
+use common::any_vehicle;
 use proptest::prelude::*;
 use quad_dynamics::nalgebra::{Rotation3, Vector3};
 use quad_dynamics::*;
 
 fn survey() -> Vehicle {
     Vehicle::new(VehicleParameters::survey_450()).expect("a preset is sound")
-}
-
-fn any_vehicle() -> impl Strategy<Value = Vehicle> {
-    let sizes = (0.02..20.0_f64, 1.2..5.0_f64, 0.0..0.5_f64, 0.03..0.6_f64);
-    (sizes, [0.9..1.3_f64, 0.9..1.3, 1.2..1.75], 0.2..2.0_f64).prop_map(
-        |((mass, ratio, drag, arm), shape, rate)| {
-            let inertia = shape.map(|share| share * 0.3 * mass * arm * arm);
-            let parameters = VehicleParameters::survey_450()
-                .with_mass(mass)
-                .with_rotors(VehicleParameters::x_layout(arm))
-                .with_principal_inertia(inertia)
-                .with_max_thrust(ratio * mass * GRAVITY)
-                .with_drag_coefficient(drag * mass)
-                .with_max_body_rates([6.0 * rate, 6.0 * rate, 3.0 * rate]);
-            Vehicle::new(parameters).expect("generated vehicles are sound")
-        },
-    )
 }
 
 fn any_yaw() -> impl Strategy<Value = LoiterYaw> {

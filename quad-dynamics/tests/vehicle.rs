@@ -1,5 +1,8 @@
 //! Parameters: what is refused, with which words, and presets.
 
+mod common;
+
+use common::any_layout;
 use proptest::prelude::*;
 use quad_dynamics::nalgebra::{Vector3, Vector4};
 use quad_dynamics::*;
@@ -99,12 +102,18 @@ proptest! {
         }
     }
 
-    /// The mixer's two directions undo each other.
+    /// The mixer's two directions undo each other, and the torque is that of forces at their places and of the spins.
     #[test]
-    fn the_mixer_inverts(f in [-9.0..9.0_f64, -9.0..9.0, -9.0..9.0, -9.0..9.0], preset in 0..4_usize) {
-        let vehicle = Vehicle::preset(VehicleParameters::PRESETS[preset]).unwrap().unwrap();
+    fn the_mixer_inverts(f in [-9.0..9.0_f64, -9.0..9.0, -9.0..9.0, -9.0..9.0], vehicle in any_layout()) {
         let (thrust, torque) = vehicle.mixer().thrust_and_torque(&Vector4::from(f));
-        prop_assert!((vehicle.mixer().rotor_thrusts(thrust, &torque) - Vector4::from(f)).amax() < 1e-11);
+        prop_assert!((vehicle.mixer().rotor_thrusts(thrust, &torque) - Vector4::from(f)).amax() < 1e-10);
+        let arms = vehicle.rotors().iter().zip(f).map(|(rotor, f)| {
+            let [x, y] = rotor.position;
+            Vector3::new(x, y, 0.0).cross(&Vector3::new(0.0, 0.0, f))
+                + Vector3::z() * (rotor.spin.yaw_sign() * vehicle.torque_to_thrust() * f)
+        });
+        prop_assert!((arms.sum::<Vector3<f64>>() - torque).amax() < 1e-12 * (1.0 + torque.norm()));
+        prop_assert!((f.iter().sum::<f64>() - thrust).abs() < 1e-12 * (1.0 + thrust.abs()));
     }
 }
 
