@@ -105,6 +105,14 @@ impl Camera {
     pub fn distance_for(&self, height: f64, share: f64) -> f64 {
         height / (2.0 * share * (0.5 * self.vertical_view).tan())
     }
+
+    /// The radius (m) of the circle on which something `height` metres tall takes this share of the picture's height, flown
+    /// `above` (m, either sign) its middle; `None` if it looks smaller than that from right above.
+    #[must_use]
+    pub fn radius_for(&self, height: f64, share: f64, above: f64) -> Option<f64> {
+        let squared = self.distance_for(height, share).powi(2) - above * above;
+        (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
+    }
 }
 
 /// The body turned back to level, its heading kept.
@@ -147,6 +155,15 @@ mod tests {
         assert_eq!(camera.share_in_view(&loiter, Direction::CounterClockwise, 0.0, [0.0, 0.0]), 1.0);
         assert_eq!(camera.share_in_view(&loiter, Direction::Clockwise, 0.0, [0.0, 0.0]), 0.0);
         assert!((camera.share_of_picture(1.0, camera.distance_for(1.0, 0.4)) - 0.4).abs() < 1e-12);
+        for above in [0.0, 1.5, -1.0] {
+            let radius = camera.radius_for(1.8, 0.4, above).unwrap_or(f64::NAN);
+            assert!((camera.share_of_picture(1.8, radius.hypot(above)) - 0.4).abs() < 1e-12, "{above}");
+        }
+        for (height, share, above) in
+            [(1.8, 0.4, 30.0), (1.8, 0.0, 1.0), (f64::NAN, 0.4, 1.0), (-1.0, 0.0, 0.0)]
+        {
+            assert_eq!(camera.radius_for(height, share, above), None);
+        }
         Ok(())
     }
 }
