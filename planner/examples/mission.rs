@@ -34,11 +34,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let count =
                 |wanted: fn(&Outcome) -> bool| leg.candidates.iter().filter(|c| wanted(&c.outcome)).count();
             let solved = count(|outcome| matches!(outcome, Outcome::Solved { .. }));
+            let slower = count(|outcome| matches!(outcome, Outcome::Slower { .. }));
             let discarded = count(|outcome| matches!(outcome, Outcome::ProvenWorse { .. }));
             let failed = count(|outcome| matches!(outcome, Outcome::Failed { .. }));
             let (t, miss) = (&leg.transition, leg.transition.miss);
             println!(
-                "  to {goal}: {:.3} s, {} iterations; {solved} candidates solved, {discarded} proven worse, {failed} failed; \
+                "  to {goal}: {:.3} s, {} iterations; {solved} candidates solved, {slower} given up, {discarded} proven worse, {failed} failed; \
                  miss {:.1e} m, {:.1e} m/s, {:.1e} rad",
                 t.duration, t.iterations, miss.position, miss.velocity, miss.attitude
             );

@@ -178,7 +178,10 @@ impl Airspace<'_> {
             let solved = self.draft_all(here, orbit, &entrances, &open, &drafted, to_beat);
             self.watch.advance(batch.len());
             for (index, outcome) in open.into_iter().zip(solved) {
-                candidates[index].outcome = outcome_of(outcome.as_ref().map(|draft| &draft.transition));
+                candidates[index].outcome = match &outcome {
+                    Ok(draft) if draft.given_up => Outcome::Slower { duration: draft.transition.duration },
+                    outcome => outcome_of(outcome.as_ref().map(|draft| &draft.transition)),
+                };
                 if let Ok(draft) = outcome {
                     drafted.push(Drafted { index, entry: entrances[index].entry, draft });
                 }

@@ -34,7 +34,8 @@
 //!
 //! # Guarantees
 //! - Every leg in a plan was solved; a leg that could not be is an [`Error::Leg`] with all residuals.
-//! - A candidate entry is discarded only on a proven bound.
+//! - A candidate entry is discarded unsolved only on a proven bound, and is given up half solved only on an estimate that is on the
+//!   safe side; either is recorded ([`Outcome`]). [`Options::exhaustive`] solves all of them to the end.
 //! - The certificate's lower bounds hold over every allocation, order, entry, direction and admissible motion.
 //! - The same mission and seed give the same plan to the bit, with or without the feature `rayon`, on any number of threads.
 //!

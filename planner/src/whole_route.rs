@@ -22,7 +22,7 @@ pub(crate) struct Flown<'a> {
 }
 
 impl Airspace<'_> {
-    /// All transitions that were solved along a route: from, to, time (s).
+    /// All transitions that were solved along a route, to the end or nearly: from, to, time (s).
     pub(crate) fn solved(&self, pad: [f64; 3], route: &[usize], legs: &[Leg]) -> Vec<(Motion, Motion, f64)> {
         let mut solved = Vec::new();
         let mut here = self.take_off(pad, route);
@@ -30,7 +30,8 @@ impl Airspace<'_> {
             let Some(loiter) = leg.loiter else { break };
             let orbit = &self.orbits[loiter.circle];
             for candidate in &leg.candidates {
-                if let (Some(entry), Outcome::Solved { duration }) = (candidate.entry, candidate.outcome) {
+                let Some(entry) = candidate.entry else { continue };
+                if let Outcome::Solved { duration } | Outcome::Slower { duration } = candidate.outcome {
                     solved.push((here, orbit.at(entry), duration));
                 }
             }

@@ -69,6 +69,8 @@ impl Unsolved {
 #[derive(Clone)]
 pub(crate) struct Draft {
     pub transition: Transition,
+    /// Whether it was given up because it is slower than what it had to beat.
+    pub given_up: bool,
     /// The [`Solved`] of the model at hand.
     solved: Arc<dyn Any + Send + Sync>,
 }
@@ -85,7 +87,11 @@ struct Solved<const NX: usize, const NU: usize> {
 
 impl<const NX: usize, const NU: usize> From<Solved<NX, NU>> for Draft {
     fn from(solved: Solved<NX, NU>) -> Self {
-        Self { transition: solved.transition.clone(), solved: Arc::new(solved) }
+        Self {
+            transition: solved.transition.clone(),
+            given_up: solved.solution.status == Status::Stopped,
+            solved: Arc::new(solved),
+        }
     }
 }
 

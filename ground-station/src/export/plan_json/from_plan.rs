@@ -192,6 +192,7 @@ fn candidate_entry(candidate: &Candidate) -> CandidateEntry {
         direction: candidate.entry.map(|entry| words::sign(entry.direction)),
         outcome: match candidate.outcome {
             Outcome::Solved { duration } => OutcomeEntry::Solved { duration_s: duration },
+            Outcome::Slower { duration } => OutcomeEntry::Slower { duration_s: duration },
             Outcome::ProvenWorse { lower_bound } => OutcomeEntry::ProvenWorse { lower_bound_s: lower_bound },
             Outcome::Failed { primal_residual, dual_residual } => OutcomeEntry::Failed {
                 primal_residual: finite(primal_residual),

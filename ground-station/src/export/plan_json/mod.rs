@@ -215,6 +215,11 @@ pub struct CandidateEntry {
 pub enum OutcomeEntry {
     /// Solved, with its time.
     Solved { duration_s: f64 },
+    /// Given up half solved, because it takes longer than another.
+    Slower {
+        /// Time of flight when it was given up, s.
+        duration_s: f64,
+    },
     /// A certified lower bound exceeds the best time.
     ProvenWorse { lower_bound_s: f64 },
     /// Not solved; says nothing about its time.
