@@ -32,8 +32,8 @@ const LONGEST_STEP: f64 = 0.16;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
 
-/// Scaled primal residual of an iterate whose time tells something.
-const NEARLY_FEASIBLE: f64 = 1e-2;
+/// Scaled primal residual of an iterate whose time tells something: at 1e-2 two of a hundred legs took another entry.
+const NEARLY_FEASIBLE: f64 = 1e-3;
 /// Bounds that hold in each segment, on controls and height; at the barrier parameter mu each is worth mu (s) of time.
 const BOUNDS_PER_SEGMENT: usize = 10;
 
