@@ -160,7 +160,7 @@ pub fn solve_path(
 }
 
 /// Christofides' tour, opened at the start (or at its longest edge if that is free), with a named end moved to the end.
-fn start_path(metric: &impl Metric, ends: Ends) -> Result<Path, Error> {
+pub(crate) fn start_path(metric: &impl Metric, ends: Ends) -> Result<Path, Error> {
     let mut order = from_tree_and_matching(metric)?.into_order();
     let n = order.len();
     let first = match ends {

@@ -1,16 +1,18 @@
 //! Euler circuits of multigraphs.
 
 use crate::error::Error;
+use crate::validate::check_count;
 
 /// A closed walk from vertex 0 that uses every edge exactly once, as its vertices without the last one (Hierholzer 1873).
 ///
 /// # Errors
 /// [`Error::VertexOutOfRange`]; [`Error::OddVertexCount`] with the number of vertices of odd degree, if there are any;
-/// [`Error::Disconnected`] if a vertex cannot be reached from vertex 0.
+/// [`Error::Disconnected`] if a vertex cannot be reached from vertex 0; [`Error::TooManyVertices`] above 2^30.
 ///
 /// # Complexity
 /// `O(n + m)` time and memory.
 pub fn euler_circuit(n: usize, edges: &[[usize; 2]]) -> Result<Vec<usize>, Error> {
+    check_count(n)?;
     let mut walk = Walk::default();
     walk.find(n, edges, 0)?;
     Ok(walk.circuit)

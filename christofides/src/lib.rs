@@ -30,6 +30,7 @@
 //! | a better tour or path | [`improve`], [`chained_improve`], [`improve_path`], [`chained_improve_path`] | by the kicks |
 //! | a lower bound | [`held_karp`] | by the iterations |
 //! | a matching with its duals | [`matching::min_weight_perfect_matching`], [`matching::Solver`] | |
+//! | a matching of most weight or most edges | [`matching::max_weight_matching`], [`matching::max_cardinality_matching`] | |
 //! | single steps | [`minimum_spanning_tree`], [`euler_circuit`], [`shortcut`] | |
 //!
 //! # Example

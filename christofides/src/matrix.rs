@@ -52,10 +52,16 @@ impl Matrix {
     /// The distances of `metric`, tabulated.
     ///
     /// # Errors
-    /// What [`Matrix::symmetric`] refuses.
+    /// What [`Matrix::symmetric`] refuses; [`Error::TooManyVertices`] if the table would not fit the memory.
     pub fn tabulate(metric: &impl Metric) -> Result<Self, Error> {
         let n = metric.len();
-        let distances = (0..n).flat_map(|i| (0..n).map(move |j| metric.distance(i, j))).collect();
+        let mut distances = Vec::new();
+        // The largest table that could be asked for, not the largest that there is memory for.
+        let limit = (isize::MAX as usize / size_of::<f64>()).isqrt();
+        if distances.try_reserve_exact(n.saturating_mul(n)).is_err() {
+            return Err(Error::TooManyVertices { n, limit: limit.min(n - 1) });
+        }
+        distances.extend((0..n).flat_map(|i| (0..n).map(move |j| metric.distance(i, j))));
         Ok(Self { is_metric: metric.is_metric(), ..Self::symmetric(n, distances)? })
     }
 

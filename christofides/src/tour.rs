@@ -54,19 +54,6 @@ impl Ends {
     }
 }
 
-impl Ends {
-    /// The vertices in order, but for the named ends.
-    pub(crate) fn any_order(self, n: usize) -> Vec<usize> {
-        let (first, last) = match self {
-            Ends::Free => (None, None),
-            Ends::Start(start) => (Some(start), None),
-            Ends::Both(start, end) => (Some(start), Some(end).filter(|&end| end != start)),
-        };
-        let others = (0..n).filter(|&v| Some(v) != first && Some(v) != last);
-        first.into_iter().chain(others).chain(last).collect()
-    }
-}
-
 macro_rules! ordered {
     ($name:ident, $edges:ident) => {
         impl $name {

@@ -8,10 +8,18 @@ use crate::metric::{Geometry, Metric};
 /// Two additions and a square root leave less than four units in the last place of the larger side.
 const TRIANGLE_TOLERANCE: f64 = 1e-12;
 
+/// Most vertices that are taken: their numbers, doubled and with those of blossoms, fit 32 bits.
+const MOST_VERTICES: usize = 1 << 30;
+
+/// Refuses more vertices than can be numbered.
+pub(crate) fn check_count(n: usize) -> Result<(), Error> {
+    if n > MOST_VERTICES { Err(Error::TooManyVertices { n, limit: MOST_VERTICES }) } else { Ok(()) }
+}
+
 /// Checks every promise of a metric: finite, symmetric, non-negative, zero from a vertex to itself, triangle inequality.
 ///
 /// # Errors
-/// The first violation in lexicographic order, with its indices.
+/// The first violation in lexicographic order, with its indices; [`Error::TooManyVertices`] above 2^30.
 ///
 /// # Complexity
 /// `O(n^3)` time for distances without coordinates, `O(n)` for points, whose distance cannot break a promise. Allocates nothing.
@@ -39,6 +47,7 @@ pub(crate) fn validate_promised(metric: &impl Metric) -> Result<(), Error> {
 }
 
 fn validate_points<const D: usize>(points: &[[f64; D]]) -> Result<(), Error> {
+    check_count(points.len())?;
     let mut extent = [[f64::INFINITY, f64::NEG_INFINITY]; D];
     for (point, coordinates) in points.iter().enumerate() {
         for (axis, &x) in coordinates.iter().enumerate() {
@@ -56,6 +65,7 @@ fn validate_points<const D: usize>(points: &[[f64; D]]) -> Result<(), Error> {
 /// Checks finiteness, symmetry, signs and the diagonal of every pair.
 pub(crate) fn validate_symmetric(metric: &impl Metric) -> Result<(), Error> {
     let n = metric.len();
+    check_count(n)?;
     let mut greatest = 0.0_f64;
     for i in 0..n {
         if metric.distance(i, i) != 0.0 {

@@ -1,7 +1,8 @@
 //! The matching: known optima, exhaustive optima, certificates, invariance.
 
 use christofides::matching::{
-    Solver, certificate, min_weight_perfect_matching, sparse_min_weight_perfect_matching,
+    Solver, certificate, max_cardinality_matching, max_weight_matching, min_weight_perfect_matching,
+    sparse_min_weight_perfect_matching,
 };
 use christofides::{Error, FromFn, Matrix, Metric, Points};
 use proptest::prelude::*;
@@ -82,6 +83,17 @@ fn malformed_input_is_refused() {
     assert!(min_weight_perfect_matching(&Points::<2>(&[])).unwrap().mates().is_empty());
 }
 
+/// The best of all matchings by size times `bonus` plus weight, edge by edge.
+fn exhaustive_maximum(edges: &[(usize, usize, f64)], used: usize, bonus: f64) -> f64 {
+    let Some((&(u, v, weight), rest)) = edges.split_first() else { return 0.0 };
+    let without = exhaustive_maximum(rest, used, bonus);
+    let ends = 1 << u | 1 << v;
+    if u == v || used & ends != 0 {
+        return without;
+    }
+    without.max(bonus + weight + exhaustive_maximum(rest, used | ends, bonus))
+}
+
 /// Least weight over all matchings, vertex by vertex.
 fn exhaustive(n: usize, weight: impl Fn(usize, usize) -> f64) -> f64 {
     let mut best = vec![f64::INFINITY; 1 << n];
@@ -151,6 +163,24 @@ proptest! {
             Err(error) => {
                 let is_refused = matches!(error, Error::NoPerfectMatching { .. });
                 prop_assert!(is_refused && optimum == f64::INFINITY)
+            }
+        }
+    }
+
+    #[test]
+    fn maximum_is_exhaustive(n in 0..9_usize, edges in prop::collection::vec((0..9_usize, 0..9_usize, -20..20i32), 0..14)) {
+        let edges: Vec<(usize, usize, f64)> =
+            edges.into_iter().filter(|e| e.0 < n && e.1 < n).map(|(u, v, w)| (u, v, f64::from(w))).collect();
+        let heaviest = max_weight_matching(n, &edges).unwrap();
+        prop_assert_eq!(heaviest.weight(), exhaustive_maximum(&edges, 0, 0.0));
+        let largest = max_cardinality_matching(n, &edges).unwrap();
+        let value = 1000.0 * largest.edges().count() as f64 + largest.weight();
+        prop_assert_eq!(value, exhaustive_maximum(&edges, 0, 1000.0));
+        for matching in [heaviest, largest] {
+            prop_assert!(matching.error_bound() < 1e-9);
+            for (u, v) in matching.edges() {
+                prop_assert!(matching.mates()[u] == Some(v) && matching.mates()[v] == Some(u));
+                prop_assert!(edges.iter().any(|e| (e.0.min(e.1), e.0.max(e.1)) == (u, v)));
             }
         }
     }

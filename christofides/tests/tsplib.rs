@@ -1,4 +1,6 @@
 //! TSPLIB's other edge weights, with optima that the library publishes (Reinelt 1991), proven again here.
+//!
+//! The instances are transcribed; that the transcription is right is shown by the proven optimum, which is the published length.
 
 #[path = "../examples/tour/instance.rs"]
 mod instance;
@@ -10,6 +12,11 @@ use instance::Instance;
 const BURMA14: &str =
     "16.47 96.10 16.47 94.44 20.09 92.54 22.39 93.37 25.23 97.24 22.00 96.05 20.47 97.02 17.20 96.29
     16.30 97.38 14.05 98.12 16.53 97.38 21.52 95.59 19.41 97.13 20.09 94.55";
+
+/// Cities of ulysses16, degrees and minutes.
+const ULYSSES16: &str =
+    "38.24 20.42 39.57 26.15 40.56 25.32 36.26 23.12 33.48 10.54 37.56 12.19 38.42 13.11 37.52 20.44
+    41.23 9.10 41.17 13.05 36.08 -5.21 38.47 15.13 38.15 15.35 37.51 15.17 35.49 14.32 39.36 19.56";
 
 /// Cities of att48.
 const ATT48: &str = "6734 1453 2233 10 5530 1424 401 841 3082 1644 7608 4458 7573 3716 7265 1268 6898 1885 1112 2049
@@ -55,6 +62,7 @@ fn assert_optimum(instance: &Instance, optimum: f64) {
 #[test]
 fn geographic() {
     assert_optimum(&with_points("GEO", BURMA14), 3323.0);
+    assert_optimum(&with_points("GEO", ULYSSES16), 6859.0);
 }
 
 #[test]

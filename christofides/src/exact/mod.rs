@@ -3,7 +3,7 @@
 mod branch_and_bound;
 pub(crate) mod subsets;
 
-use crate::algorithm::from_tree_and_matching;
+use crate::algorithm::{from_tree_and_matching, start_path};
 use crate::error::Error;
 use crate::improve::{Pinned, chained_improve, chained_improve_path};
 use crate::metric::Metric;
@@ -83,8 +83,7 @@ fn search_tour(metric: &impl Metric) -> Result<Found, Error> {
 /// The edges between the joint and the fixed ends are required, so that they need no bond.
 fn search_path(metric: &impl Metric, ends: Ends) -> Result<Found, Error> {
     let n = metric.len();
-    let start = Path::measured(metric, ends.any_order(n));
-    let start = chained_improve_path(metric, start, ends, KICKS, 1, &mut || false)?;
+    let start = chained_improve_path(metric, start_path(metric, ends)?, ends, KICKS, 1, &mut || false)?;
     let pinned = Pinned::new(metric, ends, 0.0);
     let required = match ends {
         Ends::Free => Vec::new(),

@@ -30,6 +30,7 @@ mod certificate;
 mod expand;
 mod forest;
 mod graph;
+mod maximum;
 mod pricing;
 mod quantise;
 mod queue;
@@ -40,4 +41,5 @@ mod start;
 
 pub use blossoms::Blossom;
 pub use certificate::{Certificate, certificate};
+pub use maximum::{PartialMatching, max_cardinality_matching, max_weight_matching};
 pub use solver::{Matching, Solver, min_weight_perfect_matching, sparse_min_weight_perfect_matching};

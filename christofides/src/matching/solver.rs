@@ -8,7 +8,7 @@ use super::search::Exposed;
 use crate::candidates::Candidates;
 use crate::error::Error;
 use crate::metric::Metric;
-use crate::validate::validate_finite;
+use crate::validate::{check_count, validate_finite};
 
 /// A perfect matching with the dual solution that proves it optimal.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -70,7 +70,8 @@ pub fn min_weight_perfect_matching(metric: &impl Metric) -> Result<Matching, Err
 /// A minimum-weight perfect matching of a sparse graph on `n` vertices; weights may be of either sign.
 ///
 /// # Errors
-/// [`Error::OddVertexCount`], [`Error::VertexOutOfRange`], [`Error::NonFiniteDistance`], [`Error::NoPerfectMatching`].
+/// [`Error::OddVertexCount`], [`Error::VertexOutOfRange`], [`Error::NonFiniteDistance`], [`Error::NoPerfectMatching`],
+/// [`Error::TooManyVertices`] above 2^30.
 pub fn sparse_min_weight_perfect_matching(
     n: usize,
     edges: &[(usize, usize, f64)],
@@ -148,16 +149,12 @@ impl Solver {
         if n % 2 == 1 {
             return Err(Error::OddVertexCount { n });
         }
-        let mut greatest = 0.0_f64;
-        for &(i, j, weight) in edges {
-            if let Some(vertex) = [i, j].into_iter().find(|&vertex| vertex >= n) {
-                return Err(Error::VertexOutOfRange { vertex, n });
-            }
-            if !weight.is_finite() {
-                return Err(Error::NonFiniteDistance { i, j });
-            }
-            greatest = greatest.max(weight.abs());
+        check_edges(n, edges)?;
+        // Also keeps the memory linear in the edges, whatever the number of vertices.
+        if edges.len() < n / 2 {
+            return Err(Error::NoPerfectMatching { exposed: n - 2 * edges.len() });
         }
+        let greatest = edges.iter().map(|edge| edge.2.abs()).fold(0.0, f64::max);
         let scale = Scale::new(greatest);
         self.edges.clear();
         let scaled = edges.iter().filter(|edge| edge.0 != edge.1);
@@ -182,6 +179,20 @@ impl Solver {
             blossoms,
         }
     }
+}
+
+/// Refuses ends that do not exist, weights that are not finite, and more vertices than the solver can number.
+pub(super) fn check_edges(n: usize, edges: &[(usize, usize, f64)]) -> Result<(), Error> {
+    check_count(n)?;
+    for &(i, j, weight) in edges {
+        if let Some(vertex) = [i, j].into_iter().find(|&vertex| vertex >= n) {
+            return Err(Error::VertexOutOfRange { vertex, n });
+        }
+        if !weight.is_finite() {
+            return Err(Error::NonFiniteDistance { i, j });
+        }
+    }
+    Ok(())
 }
 
 /// The weight of a matching; of parallel edges the lightest counts.
