@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::mission::{Entries, Mission};
 use crate::options::Watch;
 use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
+use crate::race::{Arrival, Race};
 use crate::transition::{Draft, Goal, Hint, Pilot, Unsolved};
 use quad_dynamics::Motion;
 
@@ -21,26 +22,6 @@ pub(crate) struct Airspace<'a> {
     pub pilot: Pilot,
     pub envelope: Envelope,
     pub watch: Watch<'a>,
-}
-
-/// A solved candidate that is not flown yet.
-struct Drafted {
-    /// Where in the list of candidates.
-    index: usize,
-    entry: Entry,
-    draft: Draft,
-}
-
-impl Drafted {
-    fn duration(&self) -> f64 {
-        self.draft.transition.duration
-    }
-}
-
-/// The candidate that is flown.
-struct Arrival {
-    entry: Entry,
-    transition: Transition,
 }
 
 impl Airspace<'_> {
@@ -121,7 +102,7 @@ impl Airspace<'_> {
         let there = orbit.at(entry);
         let hint = Hint::Time(self.envelope.least_time_between(here, &there));
         let solved = self.pilot.fly(here, Goal::Motion(there), &there, hint);
-        let mut candidates = vec![Candidate { entry: Some(entry), outcome: outcome_of(solved.as_ref()) }];
+        let mut candidates = vec![Candidate { entry: Some(entry), outcome: outcome_of(&solved) }];
         let arrival = solved.ok().map(|transition| Arrival { entry, transition });
         let freed = match (self.mission.transition.entries, &arrival) {
             (Entries::Free, Some(arrival)) => self.freed(here, orbit, arrival, &mut candidates),
@@ -159,37 +140,16 @@ impl Airspace<'_> {
         let entrances = entry::entrances(here, orbit, self.mission.transition.entries, |from, to| {
             self.least_time(from, to)
         });
-        let mut candidates: Vec<Candidate> = entrances
-            .iter()
-            .map(|entrance| Candidate {
-                entry: Some(entrance.entry),
-                outcome: Outcome::ProvenWorse { lower_bound: entrance.lower_bound },
-            })
-            .collect();
-        let mut drafted: Vec<Drafted> = Vec::new();
-        for batch in entry::by_promise(&entrances).chunks(BATCH) {
-            if self.watch.should_stop() {
-                break;
-            }
-            let fastest = drafted.iter().map(Drafted::duration).fold(f64::INFINITY, f64::min);
-            let to_beat = if self.watch.exhaustive() { f64::INFINITY } else { fastest };
-            let promising = |&i: &usize| entrances[i].lower_bound < to_beat;
-            let open: Vec<usize> = batch.iter().copied().filter(promising).collect();
-            let solved = self.draft_all(here, orbit, &entrances, &open, &drafted, to_beat);
-            self.watch.advance(batch.len());
-            for (index, outcome) in open.into_iter().zip(solved) {
-                candidates[index].outcome = match &outcome {
-                    Ok(draft) if draft.given_up => Outcome::Slower { duration: draft.transition.duration },
-                    outcome => outcome_of(outcome.as_ref().map(|draft| &draft.transition)),
-                };
-                if let Ok(draft) = outcome {
-                    drafted.push(Drafted { index, entry: entrances[index].entry, draft });
-                }
-            }
+        let mut race = Race::new(&entrances, self.watch.exhaustive());
+        self.draft_promising(here, orbit, &entrances, &mut race, true);
+        while let Some((index, draft)) = race.take_fastest() {
+            let goal = Goal::Motion(orbit.at(entrances[index].entry));
+            race.polished(index, self.pilot.polish(here, goal, draft));
+            // Polishing may have failed or taken time: others can win again.
+            self.draft_promising(here, orbit, &entrances, &mut race, false);
         }
-        let Some(best) = self.polish_fastest(here, orbit, drafted, &mut candidates) else {
-            return (None, candidates);
-        };
+        let (best, mut candidates) = race.finish();
+        let Some(best) = best else { return (None, candidates) };
         let freed = match self.mission.transition.entries {
             Entries::Free => self.freed(here, orbit, &best, &mut candidates),
             Entries::Sampled(_) => None,
@@ -197,30 +157,30 @@ impl Airspace<'_> {
         (Some(freed.unwrap_or(best)), candidates)
     }
 
-    /// The fastest draft that can be flown. A draft is polished if it is faster than what has been polished before; of equals
-    /// the one that stands first in the list of candidates counts.
-    fn polish_fastest(
+    /// Drafts all candidates that could win, those with the least bounds first.
+    fn draft_promising(
         &self,
         here: &Motion,
         orbit: &Orbit,
-        mut drafted: Vec<Drafted>,
-        candidates: &mut [Candidate],
-    ) -> Option<Arrival> {
-        drafted.sort_by(|a, b| a.duration().total_cmp(&b.duration()).then_with(|| a.index.cmp(&b.index)));
-        let mut best: Option<Arrival> = None;
-        for Drafted { index, entry, draft } in drafted {
-            let to_beat = best.as_ref().map_or(f64::INFINITY, |best| best.transition.duration);
-            if draft.transition.duration >= to_beat && !self.watch.exhaustive() {
-                break;
+        entrances: &[Entrance],
+        race: &mut Race,
+        is_first_pass: bool,
+    ) {
+        for batch in entry::by_promise(entrances).chunks(BATCH) {
+            if self.watch.should_stop() {
+                return;
             }
-            let polished = self.pilot.polish(here, Goal::Motion(orbit.at(entry)), &draft);
-            candidates[index].outcome = outcome_of(polished.as_ref());
-            best = match polished {
-                Ok(transition) if transition.duration < to_beat => Some(Arrival { entry, transition }),
-                _ => best,
-            };
+            let to_beat = race.to_beat();
+            let open: Vec<usize> =
+                batch.iter().copied().filter(|&index| race.is_promising(index, to_beat)).collect();
+            let drafts = self.draft_all(here, orbit, entrances, &open, race, to_beat);
+            for (index, draft) in open.into_iter().zip(drafts) {
+                race.drafted(index, draft);
+            }
+            if is_first_pass {
+                self.watch.advance(batch.len());
+            }
         }
-        best
     }
 
     /// One candidate after the other, or side by side with the feature `rayon`; the results are in the order of `open`.
@@ -230,22 +190,22 @@ impl Airspace<'_> {
         orbit: &Orbit,
         entrances: &[Entrance],
         open: &[usize],
-        drafted: &[Drafted],
+        race: &Race,
         to_beat: f64,
     ) -> Vec<Result<Draft, Unsolved>> {
-        let solve = |&i: &usize| {
+        let draft = |&i: &usize| {
             let Entrance { entry, lower_bound } = entrances[i];
             let there = orbit.at(entry);
-            let hint = neighbour(drafted, entry).map_or(Hint::Time(lower_bound), Hint::Neighbour);
+            let hint = race.neighbour(entry).map_or(Hint::Time(lower_bound), Hint::Neighbour);
             self.pilot.draft(here, Goal::Motion(there), &there, hint, to_beat)
         };
         #[cfg(feature = "rayon")]
         {
             use rayon::prelude::*;
-            open.par_iter().map(solve).collect()
+            open.par_iter().map(draft).collect()
         }
         #[cfg(not(feature = "rayon"))]
-        open.iter().map(solve).collect()
+        open.iter().map(draft).collect()
     }
 
     /// The best sampled arrival with its angle set free; kept only if it is faster.
@@ -260,7 +220,7 @@ impl Airspace<'_> {
         let hint = Hint::Neighbour(&sampled.transition);
         let to_beat = sampled.transition.duration;
         let draft = self.pilot.draft(here, goal, &orbit.at(sampled.entry), hint, to_beat).ok()?;
-        let transition = self.pilot.polish(here, goal, &draft).ok()?;
+        let transition = self.pilot.polish(here, goal, draft).ok()?;
         if transition.duration >= sampled.transition.duration {
             return None;
         }
@@ -278,30 +238,15 @@ impl Airspace<'_> {
         let there = self.landing(pad);
         let hint = Hint::Time(self.least_time(here, &there));
         let solved = self.pilot.fly(here, Goal::Hover(there), &there, hint);
-        let outcome = outcome_of(solved.as_ref());
+        let outcome = outcome_of(&solved);
         (solved.ok(), vec![Candidate { entry: None, outcome }])
     }
 }
 
-fn outcome_of(solved: Result<&Transition, &Unsolved>) -> Outcome {
+/// What became of the only candidate of a leg.
+fn outcome_of(solved: &Result<Transition, Unsolved>) -> Outcome {
     match solved {
         Ok(transition) => Outcome::Solved { duration: transition.duration },
-        Err(&Unsolved { primal_residual, dual_residual }) => {
-            Outcome::Failed { primal_residual, dual_residual }
-        }
+        Err(unsolved) => unsolved.into(),
     }
-}
-
-/// The solved transition whose entry is next to `entry` on the circle, in the same direction, up to an eighth of a turn away.
-fn neighbour(drafted: &[Drafted], entry: Entry) -> Option<&Transition> {
-    let apart = |drafted: &Drafted| {
-        let turn = (drafted.entry.angle - entry.angle).rem_euclid(std::f64::consts::TAU);
-        turn.min(std::f64::consts::TAU - turn)
-    };
-    drafted
-        .iter()
-        .filter(|drafted| drafted.entry.direction == entry.direction)
-        .filter(|drafted| apart(drafted) <= std::f64::consts::FRAC_PI_4 + 1e-9)
-        .min_by(|a, b| apart(a).total_cmp(&apart(b)).then_with(|| a.index.cmp(&b.index)))
-        .map(|drafted| &drafted.draft.transition)
 }

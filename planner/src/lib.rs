@@ -10,7 +10,7 @@
 //! | circles | close targets merged; the fastest loiter within the limits | `circles.rs` |
 //! | routes | k-means and Christofides, or optimised routes | `allocation.rs` |
 //! | entries | sampled angles in both directions, bounded from below | `entry.rs`, `bound/` |
-//! | legs | the paper's Algorithm 1: the fastest transition over all entries | `legs.rs`, `transition/` |
+//! | legs | the paper's Algorithm 1: the fastest transition over all entries | `legs.rs`, `race.rs`, `transition/` |
 //! | whole routes | entries that are best for a route, not for a leg | `whole_route.rs`, `time_model.rs` |
 //! | events | what is being flown stays, the rest follows the mission as it changes | `replan/` |
 //! | certificate | makespan and total beside lower bounds | `certificate.rs` |
@@ -34,8 +34,8 @@
 //!
 //! # Guarantees
 //! - Every leg in a plan was solved; a leg that could not be is an [`Error::Leg`] with all residuals.
-//! - A candidate entry is discarded unsolved only on a proven bound, and is given up half solved only on an estimate that is on the
-//!   safe side; either is recorded ([`Outcome`]). [`Options::exhaustive`] solves all of them to the end.
+//! - A candidate entry is discarded unsolved only on a proven bound. One that is given up half solved is so on an estimate, not a
+//!   proof. Either is recorded ([`Outcome`]), and [`Options::exhaustive`] solves all to the end.
 //! - The certificate's lower bounds hold over every allocation, order, entry, direction and admissible motion.
 //! - The same mission and seed give the same plan to the bit, with or without the feature `rayon`, on any number of threads.
 //!
@@ -61,6 +61,7 @@ mod mission;
 mod options;
 mod plan;
 mod planning;
+mod race;
 mod replan;
 mod sample;
 mod separation;

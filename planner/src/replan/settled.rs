@@ -81,11 +81,11 @@ impl Settled {
 /// Whether a leg enters a safe distance that was not there when it was planned.
 pub(super) fn enters(airspace: &Airspace, planned: &VehiclePlan, leg: usize, changes: &Changes) -> bool {
     let transition = &planned.legs[leg].transition;
-    let comes_near = |&&target: &&usize| {
+    let comes_near = |&target: &usize| {
         let mission = airspace.mission;
         least_distance(transition, mission.targets[target].position) < mission.safe_distance(target)
     };
-    if changes.keep_outs.iter().find(comes_near).is_none() {
+    if !changes.keep_outs.iter().any(comes_near) {
         return false;
     }
     let start = match leg.checked_sub(1).and_then(|before| planned.legs[before].loiter) {
@@ -98,9 +98,12 @@ pub(super) fn enters(airspace: &Airspace, planned: &VehiclePlan, leg: usize, cha
 }
 
 /// A lower bound on the horizontal distance between a transition and a point (m): from one knot to the next neither end can
-/// be farther away than its own way to the nearest place.
+/// be farther away than its own way to the nearest place. Minus infinity if a state holds no position.
 fn least_distance(transition: &Transition, [x, y]: [f64; 2]) -> f64 {
-    let distance = |state: &Vec<f64>| (state[0] - x).hypot(state[1] - y);
+    let distance = |state: &[f64]| match *state {
+        [east, north, ..] => (east - x).hypot(north - y),
+        _ => f64::NEG_INFINITY,
+    };
     let ends = transition.states.windows(2).map(|pair| distance(&pair[0]) + distance(&pair[1]));
     let times = transition.knots.windows(2).map(|pair| pair[1] - pair[0]);
     ends.zip(times)

@@ -89,7 +89,7 @@ impl Pilot {
         hint: Hint,
     ) -> Result<Transition, Unsolved> {
         let draft = self.draft(start, goal, towards, hint, f64::INFINITY)?;
-        self.polish(start, goal, &draft)
+        self.polish(start, goal, draft)
     }
 
     /// The same, only to learn how fast it is; given up early if it takes longer than `to_beat` (s).
@@ -106,7 +106,7 @@ impl Pilot {
     }
 
     /// The transition of a draft as it can be flown.
-    pub(crate) fn polish(&self, start: &Motion, goal: Goal, draft: &Draft) -> Result<Transition, Unsolved> {
+    pub(crate) fn polish(&self, start: &Motion, goal: Goal, draft: Draft) -> Result<Transition, Unsolved> {
         let surroundings = self.surroundings();
         with_flight!(&self.airframe, flight => solve::polish(flight, start, goal, draft, &surroundings))
     }

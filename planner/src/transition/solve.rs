@@ -5,11 +5,10 @@ use super::flight::Flight;
 use super::guess::{bent, guess};
 use super::problem::{Goal, KeepOut, MinimumTime};
 use crate::mission::{Transcription, TransitionSettings};
-use crate::plan::{Entry, Miss, SolverStatus, Transition};
+use crate::plan::{Entry, Miss, Outcome, SolverStatus, Transition};
 use quad_dynamics::Motion;
 use std::any::Any;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use traj_opt::{Guess, Iteration, Mesh, Options, Solution, Status, Workspace};
 
 /// Misses (m, m/s, rad) above this are worth a finer integration inside the transcription: a tenth of what is tolerated.
@@ -59,24 +58,28 @@ pub(crate) struct Unsolved {
     pub dual_residual: f64,
 }
 
+impl From<&Unsolved> for Outcome {
+    fn from(&Unsolved { primal_residual, dual_residual }: &Unsolved) -> Self {
+        Self::Failed { primal_residual, dual_residual }
+    }
+}
+
 impl Unsolved {
     /// Not even begun.
     const NOTHING: Self = Self { primal_residual: f64::INFINITY, dual_residual: f64::INFINITY };
 }
 
-/// A solved transition that is not flown yet: solved with few Runge-Kutta steps, clear of every keep-out. It tells how fast the
-/// flight is, to 2e-4.
-#[derive(Clone)]
+/// A transition solved well enough to be compared with others: with few Runge-Kutta steps, clear of every keep-out. It tells
+/// how fast the flight is, to 2e-4.
 pub(crate) struct Draft {
     pub transition: Transition,
-    /// Whether it was given up because it is slower than what it had to beat.
-    pub given_up: bool,
+    /// False if it was given up because it takes longer than what it had to beat.
+    pub is_complete: bool,
     /// The [`Solved`] of the model at hand.
-    solved: Arc<dyn Any + Send + Sync>,
+    solved: Box<dyn Any + Send + Sync>,
 }
 
 /// A solution with all that led to it.
-#[derive(Clone)]
 struct Solved<const NX: usize, const NU: usize> {
     solution: Solution<NX, NU>,
     setting: Setting,
@@ -89,8 +92,8 @@ impl<const NX: usize, const NU: usize> From<Solved<NX, NU>> for Draft {
     fn from(solved: Solved<NX, NU>) -> Self {
         Self {
             transition: solved.transition.clone(),
-            given_up: solved.solution.status == Status::Stopped,
-            solved: Arc::new(solved),
+            is_complete: solved.seen.is_some(),
+            solved: Box::new(solved),
         }
     }
 }
@@ -108,8 +111,7 @@ pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     to_beat: f64,
 ) -> Result<Draft, Unsolved> {
     let mut unsolved = Unsolved::NOTHING;
-    let attempt =
-        Attempt { flight, start, goal, surroundings, to_beat, segments: surroundings.settings.segments };
+    let attempt = Attempt::new(flight, start, goal, surroundings, to_beat);
     let about = match hint {
         Hint::Time(about) => about,
         Hint::Neighbour(neighbour) => {
@@ -141,19 +143,11 @@ pub(crate) fn polish<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     flight: &F,
     start: &Motion,
     goal: Goal,
-    draft: &Draft,
+    draft: Draft,
     surroundings: &Surroundings,
 ) -> Result<Transition, Unsolved> {
-    let Some(solved) = draft.solved.downcast_ref::<Solved<NX, NU>>() else { return Err(Unsolved::NOTHING) };
-    let attempt = Attempt {
-        flight,
-        start,
-        goal,
-        surroundings,
-        to_beat: f64::INFINITY,
-        segments: surroundings.settings.segments,
-    };
-    attempt.mend(solved.clone())
+    let Ok(solved) = draft.solved.downcast::<Solved<NX, NU>>() else { return Err(Unsolved::NOTHING) };
+    Attempt::new(flight, start, goal, surroundings, f64::INFINITY).mend(*solved)
 }
 
 /// Where a solve starts: at a trajectory, or at a solution on the same mesh with its multipliers. The latter only pays where
@@ -164,7 +158,6 @@ enum First<const NX: usize, const NU: usize> {
 }
 
 /// What may change from one solve of a transition to the next.
-#[derive(Clone)]
 struct Setting {
     keep_outs: Vec<KeepOut>,
     heights: [f64; 2],
@@ -190,7 +183,17 @@ struct Attempt<'a, F> {
     segments: usize,
 }
 
-impl<F> Attempt<'_, F> {
+impl<'a, F> Attempt<'a, F> {
+    fn new(
+        flight: &'a F,
+        start: &'a Motion,
+        goal: Goal<'a>,
+        surroundings: &'a Surroundings,
+        to_beat: f64,
+    ) -> Self {
+        Self { flight, start, goal, surroundings, to_beat, segments: surroundings.settings.segments }
+    }
+
     /// The keep-outs that a sensible flight may touch: those near the straight line. One that is entered all the same is
     /// added when that is seen.
     fn near(&self, towards: &Motion) -> Vec<KeepOut> {
@@ -348,7 +351,7 @@ impl<F> Attempt<'_, F> {
     }
 
     /// Gives a solve up once it is nearly feasible and what is left to gain, the duality gap of the barrier problem, does not
-    /// make it fast enough. The problem is not convex, so that this is no proof, but an estimate on the safe side.
+    /// make it fast enough: an estimate, and no proof, because the problem is not convex.
     fn watch(&self, iteration: &Iteration, segments: usize) -> ControlFlow<()> {
         let gap = iteration.mu * (BOUNDS_PER_SEGMENT * segments) as f64;
         let loses = iteration.residuals.primal < NEARLY_FEASIBLE && iteration.objective - gap > self.to_beat;
