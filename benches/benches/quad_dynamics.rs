@@ -47,6 +47,16 @@ fn simulation(c: &mut Criterion) {
         group.bench_function(name, |b| b.iter(|| simulate(&vehicle, black_box(&plan), &options, 1)));
     }
     group.finish();
+    let seeds: Vec<u64> = (0..16).collect();
+    let mut group = c.benchmark_group("quad_dynamics/batch");
+    group.throughput(Throughput::Elements((seeds.len() * plan.len()) as u64));
+    group.bench_function("one_by_one", |b| {
+        b.iter(|| seeds.iter().filter_map(|&seed| simulate(&vehicle, black_box(&plan), &rough, seed)).count())
+    });
+    group.bench_function("over_threads", |b| {
+        b.iter(|| simulate_batch(&vehicle, black_box(&plan), &rough, &seeds))
+    });
+    group.finish();
 }
 
 criterion_group!(benches, models, simulation);

@@ -2,23 +2,16 @@
 //!
 //! `cargo run --release -p uav-planner --features rayon --example paper_scale -- [MISSIONS] [TARGETS] [VEHICLES]`
 //!
-//! Targets uniform in [-1000, 1000]^2 m around the depot, 20 missions by default, 8 entries in both directions.
+//! Targets uniform in [-1000, 1000]^2 m around the depot, at least 5 m apart, 20 missions by default, 8 entries in both directions.
 
 use planner::quad_dynamics::{Vehicle, VehicleParameters};
 use planner::{Entries, Mission, Options, Pipeline, Plan, Target, Tolerances, plan};
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt, SeedableRng};
 use std::time::Instant;
 
-/// xorshift64*: enough for positions.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+/// Least distance between targets (m).
+const APART: f64 = 5.0;
 
 fn timed(mission: &Mission) -> Result<(Plan, f64), planner::Error> {
     let start = Instant::now();
@@ -35,12 +28,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     let (mut shorter, mut seconds) = (0.0, 0.0);
     for seed in 1..=missions as u64 {
-        let mut random = Random(seed);
-        for _ in 0..10 {
-            random.next();
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut places: Vec<[f64; 2]> = Vec::new();
+        while places.len() < targets {
+            let [x, y] = [(); 2].map(|()| random.random_range(-1000.0..1000.0));
+            // Nobody can circle a target inside another's safe distance.
+            if places.iter().all(|[a, b]| (x - a).hypot(y - b) > APART) {
+                places.push([x, y]);
+            }
         }
-        let mut place = || [2000.0 * random.next() - 1000.0, 2000.0 * random.next() - 1000.0];
-        let targets = (0..targets).map(|_| Target::at(place())).collect();
+        let targets = places.into_iter().map(Target::at).collect();
         let mut mission = Mission::new(Vehicle::new(VehicleParameters::survey_450())?, vehicles, targets);
         mission.transition.entries = Entries::Sampled(8);
         mission.seed = seed;

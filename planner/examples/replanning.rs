@@ -37,7 +37,7 @@ fn main() -> Result<(), Error> {
             let update = replanner.apply(time, &event)?;
             let took = 1e3 * clock.elapsed().as_secs_f64();
             let verification = replanner.plan().verify(replanner.mission(), &Tolerances::default());
-            let stands = verification.passed() || update.conflict.is_some();
+            let stands = verification.passed();
             println!("{name:<34} {time:>4} s {took:>7.1} ms {:>9} {stands:>9}", update.vehicles.len());
             for failure in &verification.failures {
                 println!("    {failure}");

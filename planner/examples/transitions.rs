@@ -352,7 +352,7 @@ fn solve_row<D: Dynamics<NX, 4>, const NX: usize>(
             let next = turned(transition, Vector3::new(x, y, 0.0));
             let options = Options::default().with_tolerance(NEIGHBOUR_TOLERANCE);
             let begin = processor_time();
-            let found = solve_from(workspace, &next, &solution, &options, proceed)?;
+            let found = solve_from(workspace, &next, &solution, solution.transcription(), &options, proceed)?;
             Some((found.status.is_success(), found.iterations, 1e3 * (processor_time() - begin)))
         }
         _ => None,

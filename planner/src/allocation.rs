@@ -10,7 +10,8 @@ use mtsp::{Problem, assign};
 /// Restarts of k-means, scikit-learn's long-standing default.
 const RESTARTS: usize = 10;
 
-/// Iterations of the optimising allocation for each target: at 100 targets longer runs gain about 0.2 %.
+/// Iterations of the optimising allocation for each target: a tenth of a second at 100 targets. `mtsp`'s example `routes` tells
+/// what longer runs gain.
 const ITERATIONS_PER_TARGET: u64 = 1000;
 
 /// The legs between depot (node 0) and circles (node `i + 1` for circle `i`).

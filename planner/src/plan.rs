@@ -171,8 +171,8 @@ pub enum Outcome {
         /// Time of flight (s).
         duration: f64,
     },
-    /// Given up before it was solved to the end, once it was nearly feasible and what was left to gain could not make it the
-    /// best: an estimate from the duality gap of the solver's barrier problem, not a proof.
+    /// Given up as soon as it seemed slower than another: an estimate from the duality gap of the solver's barrier problem, not a
+    /// proof.
     Slower {
         /// Time of flight when it was given up (s).
         duration: f64,

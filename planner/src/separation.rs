@@ -42,19 +42,26 @@ pub(crate) fn in_the_air<R>(
 
 /// Time and least distance of two vehicles while both fly, to within [`RESOLUTION`]; `None` if they never fly together or never
 /// come closer than `to_beat` (m).
+pub(crate) fn closest_approach(first: &Airborne, second: &Airborne, to_beat: f64) -> Option<(f64, f64)> {
+    closest([(first, 0.0), (second, 0.0)], to_beat, f64::NEG_INFINITY)
+}
+
+/// Time and least distance of two flights that start later by so many seconds, to within [`RESOLUTION`], or of an encounter
+/// that is closer than `enough` (m); `None` if they never fly together or never come closer than `to_beat` (m).
 ///
 /// The distance `d` of two points changes by at most `L = v_1 + v_2` per second, so over `[a, b]` it is at least
 /// `(d(a) + d(b) - L (b - a))/2`. Intervals whose bound is within the resolution of the best distance seen are dropped,
 /// the others are halved: no encounter can hide between samples.
-pub(crate) fn closest_approach(first: &Airborne, second: &Airborne, to_beat: f64) -> Option<(f64, f64)> {
-    let start = first.flight[0].max(second.flight[0]);
-    let end = first.flight[1].min(second.flight[1]);
+fn closest(flights: [(&Airborne, f64); 2], to_beat: f64, enough: f64) -> Option<(f64, f64)> {
+    let [(first, first_delay), (second, second_delay)] = flights;
+    let start = (first.flight[0] + first_delay).max(second.flight[0] + second_delay);
+    let end = (first.flight[1] + first_delay).min(second.flight[1] + second_delay);
     if start > end {
         return None;
     }
     let lipschitz = first.top_speed + second.top_speed;
     let distance = |time: f64| {
-        let (a, b) = ((first.position)(time), (second.position)(time));
+        let (a, b) = ((first.position)(time - first_delay), (second.position)(time - second_delay));
         (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
     };
     let (at_start, at_end) = (distance(start), distance(end));
@@ -65,7 +72,9 @@ pub(crate) fn closest_approach(first: &Airborne, second: &Airborne, to_beat: f64
         }
     }
     let mut open = vec![([start, end], [at_start, at_end])];
-    while let Some(([a, b], [at_a, at_b])) = open.pop() {
+    while let Some(([a, b], [at_a, at_b])) = open.pop()
+        && best.1 >= enough
+    {
         let lower_bound = 0.5 * (at_a + at_b - lipschitz * (b - a));
         if lower_bound >= best.1 - RESOLUTION {
             continue;
@@ -109,9 +118,9 @@ pub(crate) fn start_delays(fleet: &[Option<Airborne>], separation: f64) -> Vec<f
         let Some(flight) = &fleet[vehicle] else { continue };
         let apart = |delay: f64| {
             order[..place].iter().all(|&other| {
-                fleet[other]
-                    .as_ref()
-                    .is_none_or(|placed| keeps_apart(placed, delays[other], flight, delay, separation))
+                fleet[other].as_ref().is_none_or(|placed| {
+                    closest([(placed, delays[other]), (flight, delay)], separation, separation).is_none()
+                })
             })
         };
         let waits = (0u32..).map(|step| f64::from(step) * DELAY_STEP);
@@ -122,41 +131,6 @@ pub(crate) fn start_delays(fleet: &[Option<Airborne>], separation: f64) -> Vec<f
 
 /// Granularity of start delays (s).
 const DELAY_STEP: f64 = 0.25;
-
-/// Whether two delayed flights stay `separation` apart, to within [`RESOLUTION`], by the same bound as
-/// [`closest_approach`].
-fn keeps_apart(
-    first: &Airborne,
-    first_delay: f64,
-    second: &Airborne,
-    second_delay: f64,
-    separation: f64,
-) -> bool {
-    let start = (first.flight[0] + first_delay).max(second.flight[0] + second_delay);
-    let end = (first.flight[1] + first_delay).min(second.flight[1] + second_delay);
-    if start > end {
-        return true;
-    }
-    let lipschitz = first.top_speed + second.top_speed;
-    let distance = |time: f64| {
-        let (a, b) = ((first.position)(time - first_delay), (second.position)(time - second_delay));
-        (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
-    };
-    let mut open = vec![([start, end], [distance(start), distance(end)])];
-    while let Some(([a, b], [at_a, at_b])) = open.pop() {
-        if at_a.min(at_b) < separation {
-            return false;
-        }
-        if 0.5 * (at_a + at_b - lipschitz * (b - a)) >= separation - RESOLUTION {
-            continue;
-        }
-        let middle = 0.5 * (a + b);
-        let at_middle = distance(middle);
-        open.push(([middle, b], [at_middle, at_b]));
-        open.push(([a, middle], [at_a, at_middle]));
-    }
-    true
-}
 
 #[cfg(test)]
 mod tests {

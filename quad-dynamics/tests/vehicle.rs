@@ -106,7 +106,7 @@ proptest! {
     #[test]
     fn the_mixer_inverts(f in [-9.0..9.0_f64, -9.0..9.0, -9.0..9.0, -9.0..9.0], vehicle in any_layout()) {
         let (thrust, torque) = vehicle.mixer().thrust_and_torque(&Vector4::from(f));
-        prop_assert!((vehicle.mixer().rotor_thrusts(thrust, &torque) - Vector4::from(f)).amax() < 1e-10);
+        prop_assert!((vehicle.mixer().rotor_thrusts(thrust, &torque) - Vector4::from(f)).amax() < 1e-11);
         let arms = vehicle.rotors().iter().zip(f).map(|(rotor, f)| {
             let [x, y] = rotor.position;
             Vector3::new(x, y, 0.0).cross(&Vector3::new(0.0, 0.0, f))

@@ -80,17 +80,6 @@ impl<const NX: usize, const NU: usize> Solution<NX, NU> {
         self.transcription
     }
 
-    /// The same point as a start for [`solve_from`](crate::solve_from) with another number of Runge-Kutta steps a segment: a
-    /// first solve with few steps, then a precise one from it. Times and nodes stay those of the solve. Without effect on
-    /// collocation.
-    #[must_use]
-    pub fn with_substeps(mut self, substeps: usize) -> Self {
-        if let Transcription::RungeKutta { substeps: ref mut old } = self.transcription {
-            *old = substeps.max(1);
-        }
-        self
-    }
-
     /// The mesh that was solved on.
     #[must_use]
     pub fn mesh(&self) -> &Mesh {

@@ -61,10 +61,7 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let bounds = problem.bounds();
     setup::validate(problem, &bounds)?;
     guess.validate(bounds.initial_time)?;
-    let transcription = match transcription {
-        Transcription::RungeKutta { substeps } => Transcription::RungeKutta { substeps: substeps.max(1) },
-        other => other,
-    };
+    let transcription = transcription.valid();
     let scales = problem.scales().unwrap_or_else(|| setup::default_scales(&bounds, guess));
     let free_time = bounds.final_time_lower != bounds.final_time_upper;
     let program = Program { problem, mesh, transcription, bounds, scales, free_time };
@@ -101,7 +98,7 @@ fn restart_factors(doublings: usize) -> impl Iterator<Item = f64> {
     first.chain(leaps).take(if doublings == 0 { 0 } else { usize::MAX })
 }
 
-/// Solves a problem that differs little from one that is solved (another end state, other limits), on the same mesh, starting from
+/// Solves a problem that differs little from one that is solved (another end state, other limits, more Runge-Kutta steps), on the same mesh, starting from
 /// that one's primal and dual variables with the barrier parameter [`Options::warm_mu`]: a few iterations where a solve from a
 /// guess takes a few dozen (method: every variable and its multiplier are moved to where their product is mu; E. A. Yildirim,
 /// S. J. Wright, *Warm-start strategies in interior-point methods for linear programming*, SIAM J. Optim. 12, 2002). If the shapes
@@ -113,6 +110,7 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     workspace: &mut Workspace<NX, NU>,
     problem: &P,
     previous: &Solution<NX, NU>,
+    transcription: Transcription,
     options: &Options,
     mut monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
 ) -> Result<Solution<NX, NU>, Error> {
@@ -120,7 +118,7 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let bounds = problem.bounds();
     setup::validate(problem, &bounds)?;
     let guess = Guess::from_solution(previous, 1);
-    let (mesh, transcription) = (previous.mesh(), previous.transcription());
+    let (mesh, transcription) = (previous.mesh(), transcription.valid());
     let scales = problem.scales().unwrap_or_else(|| setup::default_scales(&bounds, &guess));
     let free_time = bounds.final_time_lower != bounds.final_time_upper;
     let program = Program { problem, mesh, transcription, bounds, scales, free_time };

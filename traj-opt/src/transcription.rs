@@ -79,6 +79,14 @@ impl Default for Transcription {
 }
 
 impl Transcription {
+    /// With at least one step a segment.
+    pub(crate) fn valid(self) -> Self {
+        match self {
+            Self::RungeKutta { substeps } => Self::RungeKutta { substeps: substeps.max(1) },
+            other => other,
+        }
+    }
+
     /// Number of control vectors of a segment.
     #[must_use]
     pub fn n_local(self) -> usize {

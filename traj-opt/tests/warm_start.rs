@@ -28,7 +28,9 @@ fn neighbours_are_solved_in_a_fraction_of_the_iterations() {
         end[2] -= SHIFT;
         let near = thrust_rate(&r.start, &end);
         let cold = solve(&near);
-        let warm = solve_from(&mut workspace, &near, &previous, &options, proceed).expect("valid input");
+        let warm =
+            solve_from(&mut workspace, &near, &previous, Transcription::HermiteSimpson, &options, proceed)
+                .expect("valid input");
         assert!(previous.status.is_success() && cold.status.is_success());
         assert_eq!(warm.status, Status::Solved, "transition {}", r.id);
         // both are local minima; the neighbour's basin is kept, which the guess need not find
@@ -62,8 +64,41 @@ fn another_shape_falls_back_to_the_trajectory_as_a_guess() {
     let mut free_end = thrust_rate(&r.start, &r.end);
     free_end.bounds.terminal_lower[2] = f64::NEG_INFINITY;
     free_end.bounds.terminal_upper[2] = f64::INFINITY;
-    let solved =
-        solve_from(&mut workspace, &free_end, &coarse, &Options::default(), proceed).expect("valid input");
+    let solved = solve_from(
+        &mut workspace,
+        &free_end,
+        &coarse,
+        Transcription::Trapezoidal,
+        &Options::default(),
+        proceed,
+    )
+    .expect("valid input");
     assert!(solved.status.is_success());
     assert!(solved.objective <= coarse.objective * (1.0 + 1e-6));
+}
+
+/// More Runge-Kutta steps a segment change little: the multipliers of few steps are a good start.
+#[test]
+fn few_steps_are_a_start_for_many() {
+    let options = Options::default().with_tolerance(1e-6);
+    let proceed = |_: &traj_opt::Iteration| ControlFlow::Continue(());
+    let mut workspace = Workspace::new();
+    let (mut cold_iterations, mut warm_iterations) = (0, 0);
+    for r in references().iter().step_by(10) {
+        let t = thrust_rate(&r.start, &r.end);
+        let guess = naive_guess(&t, hover_thrust_rate());
+        let mesh = Mesh::uniform(40);
+        let [few, many] = [1, 4].map(|substeps| Transcription::RungeKutta { substeps });
+        let mut cold = |transcription| {
+            solve_with(&mut workspace, &t, &mesh, transcription, &guess, &options, proceed)
+                .expect("valid input")
+        };
+        let (previous, wanted) = (cold(few), cold(many));
+        let warm = solve_from(&mut workspace, &t, &previous, many, &options, proceed).expect("valid input");
+        assert_eq!((warm.status, warm.transcription()), (Status::Solved, many), "transition {}", r.id);
+        assert!(warm.objective < wanted.objective * 1.001, "{} against {}", warm.objective, wanted.objective);
+        cold_iterations += wanted.iterations;
+        warm_iterations += warm.iterations;
+    }
+    assert!(2 * warm_iterations < cold_iterations, "{warm_iterations} warm, {cold_iterations} cold");
 }

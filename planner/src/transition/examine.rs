@@ -60,6 +60,21 @@ pub(crate) fn well_formed(transition: &Transition, nx: usize, nu: usize) -> bool
         && transition.knots.windows(2).all(|pair| pair[0] < pair[1])
 }
 
+/// Segment `k` of a well-formed transition, its controls integrated from `state`; `None` if that fails.
+fn integrated<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
+    flight: &F,
+    transition: &Transition,
+    k: usize,
+    state: SVector<f64, NX>,
+    options: &IntegrateOptions,
+) -> Option<Trajectory<NX>> {
+    let (from, to) = (transition.knots[k], transition.knots[k + 1]);
+    let at = |t: f64| control::<NU>(transition, k, ((t - from) / (to - from)).clamp(0.0, 1.0));
+    let mut segment = Trajectory::starting_at(from, state);
+    segment.extend(|t, x| flight.derivative(t, x, &at(t)), to, options).ok()?;
+    Some(segment)
+}
+
 /// Integrates the controls from `start`, with the knots as break points, and looks at the trajectory between knots too.
 ///
 /// `None` if the arrays do not fit together or the integration fails.
@@ -91,8 +106,7 @@ pub(crate) fn examine<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     for (k, pair) in transition.knots.windows(2).enumerate() {
         let (from, to) = (pair[0], pair[1]);
         let at = |t: f64| control::<NU>(transition, k, ((t - from) / (to - from)).clamp(0.0, 1.0));
-        let mut segment = Trajectory::starting_at(from, state);
-        segment.extend(|t, x| flight.derivative(t, x, &at(t)), to, &options).ok()?;
+        let segment = integrated(flight, transition, k, state, &options)?;
         let looks = ((to - from) / LOOK_EVERY).ceil().max(1.0) as usize;
         places.clear();
         for look in 0..=looks {
@@ -182,11 +196,9 @@ pub(crate) fn path<const NX: usize, const NU: usize, F: Flight<NX, NU> + Send + 
     }
     let options = IntegrateOptions::default().with_tolerance(1e-8);
     let mut segments = Vec::with_capacity(transition.knots.len() - 1);
-    for (k, pair) in transition.knots.windows(2).enumerate() {
-        let at = |t: f64| control::<NU>(transition, k, ((t - pair[0]) / (pair[1] - pair[0])).clamp(0.0, 1.0));
+    for k in 0..transition.knots.len() - 1 {
         let knot = SVector::<f64, NX>::from_column_slice(&transition.states[k]);
-        let mut segment = Trajectory::starting_at(pair[0], knot);
-        segment.extend(|t, x| flight.derivative(t, x, &at(t)), pair[1], &options).ok()?;
+        let segment = integrated(flight, transition, k, knot, &options)?;
         segments.push(segment);
     }
     let (flight, transition) = (flight.clone(), transition.clone());

@@ -251,8 +251,7 @@ impl<'a, F> Attempt<'a, F> {
                 return Ok(transition);
             }
             let first = if setting.segments == segments {
-                let substeps = substeps(transition.duration / segments as f64, setting.longest_step);
-                First::Solution(Box::new(solution.with_substeps(substeps)))
+                First::Solution(Box::new(solution))
             } else {
                 First::Guess(Guess::from_solution(&solution, 1))
             };
@@ -332,22 +331,33 @@ impl<'a, F> Attempt<'a, F> {
         let options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
         let workspace = &mut Workspace::new();
         let watch = |iteration: &Iteration| self.watch(iteration, segments);
-        let first = match first {
-            First::Guess(guess) => guess,
-            First::Solution(previous) => {
-                return traj_opt::solve_from(workspace, &problem, previous, &options, watch).ok();
-            }
-        };
-        let uniform = first.final_time() / segments as f64;
-        let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
-        let transcription = match self.surroundings.settings.transcription {
+        let transcription = |uniform: f64| match self.surroundings.settings.transcription {
             Transcription::RungeKutta => {
                 traj_opt::Transcription::RungeKutta { substeps: substeps(uniform, longest_step) }
             }
             Transcription::HermiteSimpson => traj_opt::Transcription::HermiteSimpson,
             Transcription::Trapezoidal => traj_opt::Transcription::Trapezoidal,
         };
-        traj_opt::solve_with(workspace, &problem, &mesh, transcription, first, &options, watch).ok()
+        let solved = match first {
+            First::Guess(guess) => {
+                let uniform = guess.final_time() / segments as f64;
+                let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
+                traj_opt::solve_with(
+                    workspace,
+                    &problem,
+                    &mesh,
+                    transcription(uniform),
+                    guess,
+                    &options,
+                    watch,
+                )
+            }
+            First::Solution(previous) => {
+                let transcription = transcription(previous.final_time() / segments as f64);
+                traj_opt::solve_from(workspace, &problem, previous, transcription, &options, watch)
+            }
+        };
+        solved.ok()
     }
 
     /// Gives a solve up once it is nearly feasible and what is left to gain, the duality gap of the barrier problem, does not

@@ -22,8 +22,14 @@ pub fn any_vehicle() -> impl Strategy<Value = Vehicle> {
     )
 }
 
-/// The same with rotors in an X, a +, or anywhere around the centre from where they can hold a hover.
+/// A preset, or a generated vehicle with rotors in an X, a +, or anywhere around the centre from where they can hold a hover.
 pub fn any_layout() -> impl Strategy<Value = Vehicle> {
+    let preset = prop::sample::select(VehicleParameters::PRESETS.to_vec())
+        .prop_map(|name| Vehicle::preset(name).expect("a name of the list").expect("a preset is sound"));
+    prop_oneof![preset, any_generated()]
+}
+
+fn any_generated() -> impl Strategy<Value = Vehicle> {
     let askew = prop::array::uniform4((-0.5..0.5_f64, 0.7..1.4_f64)).prop_map(Some);
     (any_vehicle(), any::<bool>(), prop_oneof![Just(None), askew], 0.004..0.03_f64).prop_filter_map(
         "a rotor cannot give what a hover asks of it",
