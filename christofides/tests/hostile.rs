@@ -211,3 +211,13 @@ fn wrong_orders_are_refused() {
     assert_eq!(shortcut(&points, &[0, 9]), Err(Error::VertexOutOfRange { vertex: 9, n: 3 }));
     assert_eq!(Matrix::symmetric(2, vec![0.0; 3]), Err(Error::DimensionMismatch { expected: 4, found: 3 }));
 }
+
+/// Seen from two points that are very far away all others are one: no bound tells their orders apart, and the search must give up.
+#[test]
+fn a_proof_that_cannot_be_found_is_not_claimed() {
+    let near = (0..22).map(|i| [1e3 * f64::from(i).sin(), 1e3 * f64::from(3 * i).cos()]);
+    let points: Vec<[f64; 2]> = near.chain([[1e150, 0.0], [0.0, 1e150]]).collect();
+    let tour = exact_tour(&Points(&points)).unwrap();
+    let bound = tour.lower_bound().unwrap();
+    assert!(0.0 < bound && bound <= tour.cost() && tour.cost() <= 1.5 * bound, "{bound} {}", tour.cost());
+}

@@ -6,9 +6,6 @@ use crate::spanning_tree::Prim;
 /// Ascent steps at the root and at every other node of the search tree.
 const STEPS: [usize; 2] = [400, 40];
 
-/// Work after which the search gives up: nodes of the search tree times the square of the number of vertices. About four seconds.
-const MOST_WORK: usize = 50_000_000;
-
 /// What is decided about an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Status {
@@ -24,12 +21,17 @@ pub(crate) struct Found {
     pub bound: f64,
 }
 
-/// Search for a tour shorter than `order`; returns a shortest one, which is `order` if none is shorter, or the best found when
-/// the search gives up.
+/// Search for a tour shorter than `order`; returns a shortest one, which is `order` if none is shorter, or the best found after
+/// `most_work`: nodes of the search tree times the square of the number of vertices.
 ///
 /// A node is cut off when its bound reaches the cost of the best tour less the rounding that either sum may carry.
 /// The `required` edges are in every tour considered, `order` included.
-pub(crate) fn search(metric: &impl Metric, order: Vec<usize>, required: &[(usize, usize)]) -> Found {
+pub(crate) fn search(
+    metric: &impl Metric,
+    order: Vec<usize>,
+    required: &[(usize, usize)],
+    most_work: usize,
+) -> Found {
     let n = order.len();
     let cost = crate::tour::tour_edges(&order).map(|(u, v)| metric.distance(u, v)).sum();
     if n < 4 {
@@ -51,7 +53,7 @@ pub(crate) fn search(metric: &impl Metric, order: Vec<usize>, required: &[(usize
         if node.bound >= search.limit() {
             continue;
         }
-        if nodes * n * n > MOST_WORK {
+        if nodes * n * n >= most_work {
             let bound = stack.iter().map(|open| open.bound).fold(node.bound, f64::min);
             return Found { order: search.order, bound: bound.max(0.0) };
         }
