@@ -13,6 +13,7 @@ pub(crate) mod layout;
 pub(crate) mod line_search;
 pub(crate) mod lu;
 pub(crate) mod path;
+mod prepare;
 pub(crate) mod program;
 pub(crate) mod quadratic;
 pub(crate) mod radau;
