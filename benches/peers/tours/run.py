@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 RESULTS = HERE.parents[1] / "RESULTS.md"
 # Seconds that a matching by another program may take.
 PATIENCE = 60
-BEGIN, END = "<!-- christofides: begin -->", "<!-- christofides: end -->"
+BEGIN, END = "<!-- christofides peers: begin -->", "<!-- christofides peers: end -->"
 
 
 def points_of(file):
@@ -181,7 +181,7 @@ def matchings(program):
 def main():
     program = pathlib.Path(sys.argv[1])
     text = "\n".join(
-        [BEGIN, "## christofides", "", "Written by `python benches/peers/tours/run.py TARGET_FOLDER/release/examples`, in one run. Excess over the optimum (TSPLIB's",
+        [BEGIN, "Written by `python benches/peers/tours/run.py TARGET_FOLDER/release/examples`, in one run. Excess over the optimum (TSPLIB's",
          "rounding); a negative bound is below it. In brackets the time as a multiple of ours, which includes the bound.",
          f"Load of the two cores at the start: {os.getloadavg()[0]:.1f}.", ""]
         + tours(program) + ["", "Minimum-weight perfect matching, complete graph: our time, others as a multiple of it with the excess of their weight over ours",
