@@ -48,10 +48,3 @@ pub(crate) fn entrances(
         })
         .collect()
 }
-
-/// Indices of the entrances by ascending lower bound; ties by index.
-pub(crate) fn by_promise(entrances: &[Entrance]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..entrances.len()).collect();
-    order.sort_by(|&a, &b| entrances[a].lower_bound.total_cmp(&entrances[b].lower_bound));
-    order
-}

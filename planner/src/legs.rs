@@ -8,10 +8,10 @@ use crate::mission::{Entries, Mission};
 use crate::options::Watch;
 use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
 use crate::race::{Arrival, Race};
-use crate::transition::{Draft, Goal, Hint, Pilot, Unsolved};
+use crate::transition::{Detail, Goal, Hint, Pilot, Unsolved};
 use quad_dynamics::Motion;
 
-/// Candidates solved between two comparisons with the bounds. A constant, and not the number of threads, so that the same
+/// Candidates sketched between two comparisons with the bounds. A constant, and not the number of threads, so that the same
 /// candidates are discarded on every machine.
 const BATCH: usize = 2;
 
@@ -141,12 +141,15 @@ impl Airspace<'_> {
             self.least_time(from, to)
         });
         let mut race = Race::new(&entrances, self.watch.exhaustive());
-        self.draft_promising(here, orbit, &entrances, &mut race, true);
-        while let Some((index, draft)) = race.take_fastest() {
+        self.solve_promising(here, orbit, &entrances, &mut race, Detail::Sketch);
+        self.watch.advance(entrances.len());
+        loop {
+            // Some sketches are made again; and once polishing has failed or taken time, others can win after all.
+            self.solve_promising(here, orbit, &entrances, &mut race, Detail::Sketch);
+            self.solve_promising(here, orbit, &entrances, &mut race, Detail::Full);
+            let Some((index, draft)) = race.take_fastest() else { break };
             let goal = Goal::Motion(orbit.at(entrances[index].entry));
             race.polished(index, self.pilot.polish(here, goal, draft));
-            // Polishing may have failed or taken time: others can win again.
-            self.draft_promising(here, orbit, &entrances, &mut race, false);
         }
         let (best, mut candidates) = race.finish();
         let Some(best) = best else { return (None, candidates) };
@@ -157,55 +160,37 @@ impl Airspace<'_> {
         (Some(freed.unwrap_or(best)), candidates)
     }
 
-    /// Drafts all candidates that could win, those with the least bounds first.
-    fn draft_promising(
+    /// Solves all candidates that could win at some detail, the most promising first.
+    fn solve_promising(
         &self,
         here: &Motion,
         orbit: &Orbit,
         entrances: &[Entrance],
         race: &mut Race,
-        is_first_pass: bool,
+        detail: Detail,
     ) {
-        for batch in entry::by_promise(entrances).chunks(BATCH) {
+        let batch_size = match detail {
+            Detail::Sketch => BATCH,
+            Detail::Full => 1,
+        };
+        for batch in race.by_promise().chunks(batch_size) {
             if self.watch.should_stop() {
                 return;
             }
-            let to_beat = race.to_beat();
-            let open: Vec<usize> =
-                batch.iter().copied().filter(|&index| race.is_promising(index, to_beat)).collect();
-            let drafts = self.draft_all(here, orbit, entrances, &open, race, to_beat);
-            for (index, draft) in open.into_iter().zip(drafts) {
-                race.drafted(index, draft);
-            }
-            if is_first_pass {
-                self.watch.advance(batch.len());
+            let to_beat = race.to_beat(detail);
+            let batch: Vec<usize> =
+                batch.iter().copied().filter(|&index| race.is_promising(index, detail, to_beat)).collect();
+            let solve = |&index: &usize| {
+                let Entrance { entry, lower_bound } = entrances[index];
+                let there = orbit.at(entry);
+                let hint =
+                    race.trajectory(index, detail, to_beat).map_or(Hint::Time(lower_bound), Hint::Neighbour);
+                self.pilot.draft(here, Goal::Motion(there), &there, hint, (detail, to_beat))
+            };
+            for (index, solved) in batch.iter().copied().zip(side_by_side(&batch, solve)) {
+                race.solved(index, detail, solved);
             }
         }
-    }
-
-    /// One candidate after the other, or side by side with the feature `rayon`; the results are in the order of `open`.
-    fn draft_all(
-        &self,
-        here: &Motion,
-        orbit: &Orbit,
-        entrances: &[Entrance],
-        open: &[usize],
-        race: &Race,
-        to_beat: f64,
-    ) -> Vec<Result<Draft, Unsolved>> {
-        let draft = |&i: &usize| {
-            let Entrance { entry, lower_bound } = entrances[i];
-            let there = orbit.at(entry);
-            let hint = race.neighbour(entry).map_or(Hint::Time(lower_bound), Hint::Neighbour);
-            self.pilot.draft(here, Goal::Motion(there), &there, hint, to_beat)
-        };
-        #[cfg(feature = "rayon")]
-        {
-            use rayon::prelude::*;
-            open.par_iter().map(draft).collect()
-        }
-        #[cfg(not(feature = "rayon"))]
-        open.iter().map(draft).collect()
     }
 
     /// The best sampled arrival with its angle set free; kept only if it is faster.
@@ -219,7 +204,8 @@ impl Airspace<'_> {
         let goal = Goal::Circle(orbit, sampled.entry.direction);
         let hint = Hint::Neighbour(&sampled.transition);
         let to_beat = sampled.transition.duration;
-        let draft = self.pilot.draft(here, goal, &orbit.at(sampled.entry), hint, to_beat).ok()?;
+        let towards = orbit.at(sampled.entry);
+        let draft = self.pilot.draft(here, goal, &towards, hint, (Detail::Full, to_beat)).ok()?;
         let transition = self.pilot.polish(here, goal, draft).ok()?;
         if transition.duration >= sampled.transition.duration {
             return None;
@@ -241,6 +227,17 @@ impl Airspace<'_> {
         let outcome = outcome_of(&solved);
         (solved.ok(), vec![Candidate { entry: None, outcome }])
     }
+}
+
+/// One after the other, or side by side with the feature `rayon`; the results are in the order of the items.
+fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        items.par_iter().map(work).collect()
+    }
+    #[cfg(not(feature = "rayon"))]
+    items.iter().map(work).collect()
 }
 
 /// What became of the only candidate of a leg.

@@ -34,8 +34,8 @@
 //!
 //! # Guarantees
 //! - Every leg in a plan was solved; a leg that could not be is an [`Error::Leg`] with all residuals.
-//! - A candidate entry is discarded unsolved only on a proven bound. One that is given up half solved is so on an estimate, not a
-//!   proof. Either is recorded ([`Outcome`]), and [`Options::exhaustive`] solves all to the end.
+//! - Candidate entries are compared on coarse meshes first, and some are left out on an estimate ([`Outcome::Slower`]), others on a
+//!   proven bound ([`Outcome::ProvenWorse`]). Each is recorded as what it is, and [`Options::exhaustive`] solves all to the end.
 //! - The certificate's lower bounds hold over every allocation, order, entry, direction and admissible motion.
 //! - The same mission and seed give the same plan to the bit, with or without the feature `rayon`, on any number of threads.
 //!

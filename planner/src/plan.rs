@@ -171,10 +171,10 @@ pub enum Outcome {
         /// Time of flight (s).
         duration: f64,
     },
-    /// Given up as soon as it seemed slower than another: an estimate from the duality gap of the solver's barrier problem, not a
-    /// proof.
+    /// Slower than another by an estimate, not a proof: from a solve on a third of the segments, from the duality gap of a solve
+    /// that was broken off, or from what other entries of the leg take longer than their bounds.
     Slower {
-        /// Time of flight when it was given up (s).
+        /// Time of flight by that estimate (s).
         duration: f64,
     },
     /// Not solved because a certified lower bound (s) already exceeds the time of the best.

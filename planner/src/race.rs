@@ -1,9 +1,20 @@
-//! The candidate entries of one circle: drafted in order of promise, the fastest draft polished, until none that is left can be
-//! faster than what can be flown.
+//! The candidate entries of one circle: sketched in order of promise, the fastest sketches drafted, the fastest draft polished,
+//! until none that is left can be faster than what can be flown.
 
 use crate::entry::Entrance;
 use crate::plan::{Candidate, Entry, Outcome, Transition};
-use crate::transition::{Draft, Unsolved};
+use crate::transition::{Detail, Draft, Unsolved};
+
+/// How much slower than the fastest sketch of a leg a sketch may be to be drafted: so many seconds, and a share of its time.
+const MARGIN: [f64; 2] = [0.03, 0.002];
+
+/// What an entry that is not sketched is expected to take longer than its bound, as a share of the least such excess that the
+/// sketches of its leg show: the excess differs little along a leg.
+const EXPECTED_SHARE: f64 = 0.5;
+
+/// A sketch whose excess over its bound is more than so many times the least of its leg, and so many seconds, may be caught in a
+/// local minimum.
+const ODD: (f64, f64) = (2.0, 0.1);
 
 /// The candidate that is flown.
 pub(crate) struct Arrival {
@@ -15,10 +26,12 @@ pub(crate) struct Arrival {
 enum Standing {
     /// Not looked at, but for its lower bound.
     Open,
-    /// Given up when something else was faster.
-    Slower(Draft),
-    /// Drafted to the end.
-    Drafted(Draft),
+    /// No sketch could be made.
+    Unsketched,
+    /// Given up at this detail when something else was faster.
+    Slower(Detail, Draft),
+    /// Solved to the end at this detail.
+    Solved(Detail, Draft),
     /// Polished; its time of flight (s).
     Polished(f64),
     Failed(Unsolved),
@@ -28,6 +41,10 @@ enum Standing {
 pub(crate) struct Race<'a> {
     entrances: &'a [Entrance],
     standings: Vec<Standing>,
+    /// Times of complete sketches (s), infinite where there is none or the candidate has failed.
+    sketched: Vec<f64>,
+    /// Which candidates were sketched again, from a guess of their own.
+    is_again: Vec<bool>,
     best: Option<Arrival>,
     /// Whether every candidate is drafted to the end and polished.
     exhaustive: bool,
@@ -36,19 +53,35 @@ pub(crate) struct Race<'a> {
 impl<'a> Race<'a> {
     pub(crate) fn new(entrances: &'a [Entrance], exhaustive: bool) -> Self {
         let standings = entrances.iter().map(|_| Standing::Open).collect();
-        Self { entrances, standings, best: None, exhaustive }
+        Self {
+            entrances,
+            standings,
+            sketched: vec![f64::INFINITY; entrances.len()],
+            is_again: vec![false; entrances.len()],
+            best: None,
+            exhaustive,
+        }
     }
 
-    /// What a candidate must stay below to be worth anything (s): the best that can be flown, or the fastest draft.
-    pub(crate) fn to_beat(&self) -> f64 {
+    /// What a candidate must stay below at some detail to be worth anything (s).
+    pub(crate) fn to_beat(&self, detail: Detail) -> f64 {
         if self.exhaustive {
             return f64::INFINITY;
         }
         let drafts = self.standings.iter().filter_map(|standing| match standing {
-            Standing::Drafted(draft) => Some(draft.transition.duration),
+            Standing::Solved(Detail::Full, draft) => Some(draft.transition.duration),
             _ => None,
         });
-        drafts.fold(self.flown(), f64::min)
+        let solved = drafts.fold(self.flown(), f64::min);
+        match detail {
+            Detail::Full => solved,
+            // Where a draft or a polished transition turned out slower than a sketch, that sketch may win after all.
+            Detail::Sketch => {
+                let fastest = self.sketched.iter().copied().fold(f64::INFINITY, f64::min);
+                let close = MARGIN[0] + fastest * (1.0 + MARGIN[1]);
+                if solved.is_finite() { close.max(solved) } else { close }
+            }
+        }
     }
 
     /// Time of the best that can be flown (s).
@@ -56,22 +89,86 @@ impl<'a> Race<'a> {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.transition.duration)
     }
 
-    /// Whether a candidate could still stay below `to_beat` (s): by its bound, or by the time at which it was given up.
-    pub(crate) fn is_promising(&self, index: usize, to_beat: f64) -> bool {
-        match &self.standings[index] {
-            Standing::Open => self.entrances[index].lower_bound < to_beat,
-            Standing::Slower(draft) => draft.transition.duration < to_beat,
+    /// Whether a sketch may be caught in a local minimum to which its neighbour's trajectory has led, and could else win.
+    fn is_odd(&self, index: usize, to_beat: f64) -> bool {
+        let (Standing::Slower(Detail::Sketch, draft) | Standing::Solved(Detail::Sketch, draft)) =
+            &self.standings[index]
+        else {
+            return false;
+        };
+        let excess = draft.transition.duration - self.entrances[index].lower_bound;
+        !self.is_again[index]
+            && excess > ODD.0 * self.least_excess() + ODD.1
+            && self.expected(index) < to_beat
+    }
+
+    /// Whether a candidate should be solved at a detail, given what it has to beat there (s).
+    pub(crate) fn is_promising(&self, index: usize, detail: Detail, to_beat: f64) -> bool {
+        match (&self.standings[index], detail) {
+            (Standing::Open, Detail::Sketch) => self.expected(index) < to_beat,
+            (Standing::Unsketched, Detail::Full) => self.entrances[index].lower_bound < to_beat,
+            (Standing::Slower(given_up, draft), _) if *given_up == detail => {
+                draft.transition.duration < to_beat || self.is_odd(index, to_beat)
+            }
+            (Standing::Solved(Detail::Sketch, _), Detail::Sketch) => self.is_odd(index, to_beat),
+            (Standing::Solved(Detail::Sketch, draft), Detail::Full) => {
+                draft.transition.duration < self.to_beat(Detail::Sketch)
+            }
             _ => false,
         }
     }
 
-    /// Takes down what became of a draft.
-    pub(crate) fn drafted(&mut self, index: usize, outcome: Result<Draft, Unsolved>) {
-        self.standings[index] = match outcome {
-            Ok(draft) if draft.is_complete => Standing::Drafted(draft),
-            Ok(draft) => Standing::Slower(draft),
-            Err(unsolved) => Standing::Failed(unsolved),
+    /// The least that a sketch takes longer than its bound (s); 0 without sketches and in an exhaustive race.
+    fn least_excess(&self) -> f64 {
+        let excesses =
+            self.entrances.iter().zip(&self.sketched).map(|(entrance, time)| time - entrance.lower_bound);
+        let least = excesses.fold(f64::INFINITY, f64::min);
+        if least.is_finite() && !self.exhaustive { least.max(0.0) } else { 0.0 }
+    }
+
+    /// What a candidate that has not been sketched is expected to take at least (s); its lower bound in an exhaustive race.
+    fn expected(&self, index: usize) -> f64 {
+        self.entrances[index].lower_bound + EXPECTED_SHARE * self.least_excess()
+    }
+
+    /// The candidates by ascending time of their trajectories or, where there is none, lower bound; ties by index.
+    pub(crate) fn by_promise(&self) -> Vec<usize> {
+        let promise = |index: usize| match &self.standings[index] {
+            Standing::Slower(_, draft) | Standing::Solved(_, draft) => draft.transition.duration,
+            _ => self.entrances[index].lower_bound,
         };
+        let mut order: Vec<usize> = (0..self.entrances.len()).collect();
+        order.sort_by(|&a, &b| promise(a).total_cmp(&promise(b)));
+        order
+    }
+
+    /// Takes down what became of a solve at a detail.
+    pub(crate) fn solved(&mut self, index: usize, detail: Detail, outcome: Result<Draft, Unsolved>) {
+        if detail == Detail::Sketch
+            && let Standing::Slower(_, before) | Standing::Solved(_, before) = &self.standings[index]
+        {
+            self.is_again[index] = true;
+            if outcome.as_ref().map_or(true, |draft| draft.transition.duration >= before.transition.duration)
+            {
+                return;
+            }
+        }
+        self.standings[index] = match (outcome, detail) {
+            (Ok(draft), _) if draft.is_complete => {
+                if detail == Detail::Sketch {
+                    self.sketched[index] = draft.transition.duration;
+                }
+                Standing::Solved(detail, draft)
+            }
+            (Ok(draft), _) => Standing::Slower(detail, draft),
+            (Err(_), Detail::Sketch) => Standing::Unsketched,
+            (Err(unsolved), Detail::Full) => self.failed(index, unsolved),
+        };
+    }
+
+    fn failed(&mut self, index: usize, unsolved: Unsolved) -> Standing {
+        self.sketched[index] = f64::INFINITY;
+        Standing::Failed(unsolved)
     }
 
     /// Hands out the fastest draft if it is to be polished; of equals the one that stands first.
@@ -79,7 +176,7 @@ impl<'a> Race<'a> {
         let limit = if self.exhaustive { f64::INFINITY } else { self.flown() };
         let mut fastest: Option<(usize, f64)> = None;
         for (index, standing) in self.standings.iter().enumerate() {
-            if let Standing::Drafted(draft) = standing
+            if let Standing::Solved(Detail::Full, draft) = standing
                 && draft.transition.duration < fastest.map_or(limit, |(_, duration)| duration)
             {
                 fastest = Some((index, draft.transition.duration));
@@ -87,7 +184,7 @@ impl<'a> Race<'a> {
         }
         let (index, duration) = fastest?;
         match std::mem::replace(&mut self.standings[index], Standing::Polished(duration)) {
-            Standing::Drafted(draft) => Some((index, draft)),
+            Standing::Solved(_, draft) => Some((index, draft)),
             _ => None,
         }
     }
@@ -102,22 +199,29 @@ impl<'a> Race<'a> {
                 }
                 Standing::Polished(duration)
             }
-            Err(unsolved) => Standing::Failed(unsolved),
+            Err(unsolved) => self.failed(index, unsolved),
         };
     }
 
-    /// The drafted transition whose entry is next to `entry` on the circle, in the same direction, up to an eighth of a turn
+    /// What a solve at some detail starts from: a candidate's own trajectory, or else that of a neighbour; `None` for a guess.
+    pub(crate) fn trajectory(&self, index: usize, detail: Detail, to_beat: f64) -> Option<&Transition> {
+        match &self.standings[index] {
+            _ if detail == Detail::Sketch && self.is_odd(index, to_beat) => None,
+            Standing::Slower(_, draft) | Standing::Solved(_, draft) => Some(&draft.transition),
+            _ => self.neighbour(self.entrances[index].entry),
+        }
+    }
+
+    /// The trajectory whose entry is next to `entry` on the circle, in the same direction, up to an eighth of a turn
     /// away.
-    pub(crate) fn neighbour(&self, entry: Entry) -> Option<&Transition> {
+    fn neighbour(&self, entry: Entry) -> Option<&Transition> {
         let apart = |other: Entry| {
             let turn = (other.angle - entry.angle).rem_euclid(std::f64::consts::TAU);
             turn.min(std::f64::consts::TAU - turn)
         };
         let drafts =
             self.entrances.iter().zip(&self.standings).filter_map(|(entrance, standing)| match standing {
-                Standing::Slower(draft) | Standing::Drafted(draft) => {
-                    Some((entrance.entry, &draft.transition))
-                }
+                Standing::Solved(_, draft) => Some((entrance.entry, &draft.transition)),
                 _ => None,
             });
         drafts
@@ -130,17 +234,26 @@ impl<'a> Race<'a> {
 
     /// The best that can be flown, and what became of every candidate.
     pub(crate) fn finish(self) -> (Option<Arrival>, Vec<Candidate>) {
-        let outcome = |(entrance, standing): (&Entrance, &Standing)| Candidate {
-            entry: Some(entrance.entry),
-            outcome: match standing {
-                Standing::Open => Outcome::ProvenWorse { lower_bound: entrance.lower_bound },
-                Standing::Slower(draft) => Outcome::Slower { duration: draft.transition.duration },
-                Standing::Drafted(draft) => Outcome::Solved { duration: draft.transition.duration },
-                &Standing::Polished(duration) => Outcome::Solved { duration },
-                Standing::Failed(unsolved) => unsolved.into(),
+        let flown = self.flown();
+        let outcome = |(index, standing): (usize, &Standing)| match standing {
+            Standing::Open | Standing::Unsketched => match self.entrances[index].lower_bound {
+                lower_bound if lower_bound >= flown => Outcome::ProvenWorse { lower_bound },
+                _ => Outcome::Slower { duration: self.expected(index) },
             },
+            Standing::Slower(_, draft) | Standing::Solved(Detail::Sketch, draft) => {
+                Outcome::Slower { duration: draft.transition.duration }
+            }
+            Standing::Solved(Detail::Full, draft) => Outcome::Solved { duration: draft.transition.duration },
+            &Standing::Polished(duration) => Outcome::Solved { duration },
+            Standing::Failed(unsolved) => unsolved.into(),
         };
-        let candidates = self.entrances.iter().zip(&self.standings).map(outcome).collect();
+        let outcomes = self.standings.iter().enumerate().map(outcome);
+        let candidates = self
+            .entrances
+            .iter()
+            .zip(outcomes)
+            .map(|(entrance, outcome)| Candidate { entry: Some(entrance.entry), outcome });
+        let candidates = candidates.collect();
         (self.best, candidates)
     }
 }

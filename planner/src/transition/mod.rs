@@ -17,7 +17,7 @@ mod solve;
 
 pub(crate) use examine::{Examination, Path, miss};
 pub(crate) use problem::Goal;
-pub(crate) use solve::{Draft, Hint, Unsolved};
+pub(crate) use solve::{Detail, Draft, Hint, Unsolved};
 
 use crate::bound::Agility;
 use crate::circles::Orbit;
@@ -88,7 +88,7 @@ impl Pilot {
         towards: &Motion,
         hint: Hint,
     ) -> Result<Transition, Unsolved> {
-        let draft = self.draft(start, goal, towards, hint, f64::INFINITY)?;
+        let draft = self.draft(start, goal, towards, hint, (Detail::Full, f64::INFINITY))?;
         self.polish(start, goal, draft)
     }
 
@@ -99,10 +99,10 @@ impl Pilot {
         goal: Goal,
         towards: &Motion,
         hint: Hint,
-        to_beat: f64,
+        (detail, to_beat): (Detail, f64),
     ) -> Result<Draft, Unsolved> {
         let surroundings = self.surroundings();
-        with_flight!(&self.airframe, flight => solve::draft(flight, start, goal, towards, hint, &surroundings, to_beat))
+        with_flight!(&self.airframe, flight => solve::draft(flight, start, goal, towards, hint, &surroundings, (detail, to_beat)))
     }
 
     /// The transition of a draft as it can be flown.

@@ -26,6 +26,12 @@ const FIRST_MU: f64 = 0.01;
 /// Longest Runge-Kutta step of a first solve (s). Segments are short where the attitude turns, so that even the longest flights
 /// take as long as with fine steps to 2e-4 of their time: enough to see that a candidate loses.
 const LONGEST_FIRST_STEP: f64 = 1.0;
+/// Segments of a sketch as a share of the mission's, and its longest Runge-Kutta step (s). The times of 200 legs' candidates are up
+/// to 5 % long, but alike along a leg: the fastest sketch is at most 0.15 % slower than the fastest transition of the same leg.
+const SKETCH_SHARE: f64 = 0.35;
+const LONGEST_SKETCH_STEP: f64 = 2.0;
+/// The least segments of a sketch.
+const LEAST_SEGMENTS: usize = 10;
 /// The same of a transition that is flown (s): at 6 rad/s its error in attitude is about 2e-4 rad.
 const LONGEST_STEP: f64 = 0.16;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
@@ -69,8 +75,16 @@ impl Unsolved {
     const NOTHING: Self = Self { primal_residual: f64::INFINITY, dual_residual: f64::INFINITY };
 }
 
-/// A transition solved well enough to be compared with others: with few Runge-Kutta steps, clear of every keep-out. It tells
-/// how fast the flight is, to 2e-4.
+/// How finely a transition is solved that is only to be compared with others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Detail {
+    /// On a third of the segments: tells which candidates of a leg are fast, at a third of the time.
+    Sketch,
+    /// On all segments with few Runge-Kutta steps: tells how fast the flight is, to 2e-4.
+    Full,
+}
+
+/// A transition solved well enough to be compared with others, clear of every keep-out.
 pub(crate) struct Draft {
     pub transition: Transition,
     /// False if it was given up because it takes longer than what it had to beat.
@@ -108,10 +122,10 @@ pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     towards: &Motion,
     hint: Hint,
     surroundings: &Surroundings,
-    to_beat: f64,
+    (detail, to_beat): (Detail, f64),
 ) -> Result<Draft, Unsolved> {
     let mut unsolved = Unsolved::NOTHING;
-    let attempt = Attempt::new(flight, start, goal, surroundings, to_beat);
+    let attempt = Attempt::new(flight, start, goal, surroundings, detail, to_beat);
     let about = match hint {
         Hint::Time(about) => about,
         Hint::Neighbour(neighbour) => {
@@ -124,7 +138,7 @@ pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         }
     };
     for (straight, stretch, finer) in [(false, 1.2, 1), (true, 1.5, 1), (false, 2.5, 2)] {
-        let attempt = Attempt { segments: surroundings.settings.segments * finer, ..attempt };
+        let attempt = Attempt { segments: attempt.segments * finer, ..attempt };
         let keep_outs = attempt.near(towards);
         let free_yaw = matches!(goal, Goal::Hover(_));
         let first = guess(flight, start, towards, &keep_outs, stretch * about + 0.3, straight, free_yaw);
@@ -147,7 +161,7 @@ pub(crate) fn polish<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     surroundings: &Surroundings,
 ) -> Result<Transition, Unsolved> {
     let Ok(solved) = draft.solved.downcast::<Solved<NX, NU>>() else { return Err(Unsolved::NOTHING) };
-    Attempt::new(flight, start, goal, surroundings, f64::INFINITY).mend(*solved)
+    Attempt::new(flight, start, goal, surroundings, Detail::Full, f64::INFINITY).mend(*solved)
 }
 
 /// Where a solve starts: at a trajectory, or at a solution on the same mesh with its multipliers. The latter only pays where
@@ -181,6 +195,7 @@ struct Attempt<'a, F> {
     surroundings: &'a Surroundings<'a>,
     to_beat: f64,
     segments: usize,
+    longest_step: f64,
 }
 
 impl<'a, F> Attempt<'a, F> {
@@ -189,9 +204,17 @@ impl<'a, F> Attempt<'a, F> {
         start: &'a Motion,
         goal: Goal<'a>,
         surroundings: &'a Surroundings,
+        detail: Detail,
         to_beat: f64,
     ) -> Self {
-        Self { flight, start, goal, surroundings, to_beat, segments: surroundings.settings.segments }
+        let all = surroundings.settings.segments;
+        let (segments, longest_step) = match detail {
+            Detail::Full => (all, LONGEST_FIRST_STEP),
+            Detail::Sketch => {
+                ((SKETCH_SHARE * all as f64).round().max(LEAST_SEGMENTS as f64) as usize, LONGEST_SKETCH_STEP)
+            }
+        };
+        Self { flight, start, goal, surroundings, to_beat, segments, longest_step }
     }
 
     /// The keep-outs that a sensible flight may touch: those near the straight line. One that is entered all the same is
@@ -220,7 +243,7 @@ impl<'a, F> Attempt<'a, F> {
         let setting = Setting {
             keep_outs,
             heights: self.surroundings.heights,
-            longest_step: LONGEST_FIRST_STEP,
+            longest_step: self.longest_step,
             segments: self.segments,
         };
         let mut solved = self.solved(First::Guess(first), setting)?;
