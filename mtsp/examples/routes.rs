@@ -8,8 +8,11 @@ use christofides::Points;
 use mtsp::{Objective, Options, Problem, Solution, solve_with};
 use std::time::Instant;
 
-/// Iterations that fit a second on a common machine: the annealing is planned for them, the clock has the last word.
+/// Iterations that fit a second on a common machine, up to a few thousand nodes (distances stored) and beyond: the annealing is planned
+/// for them, the clock has the last word.
 const ITERATIONS_A_SECOND: f64 = 500_000.0;
+const STORED: usize = 3000;
+const ITERATIONS_A_SECOND_BEYOND: f64 = 130_000.0;
 
 struct Arguments {
     file: String,
@@ -84,7 +87,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     options = match a.iterations {
         Some(iterations) => options.with_iterations(iterations),
         None => {
-            let horizon = (a.seconds * ITERATIONS_A_SECOND) as u64;
+            let rate = if nodes.len() < STORED { ITERATIONS_A_SECOND } else { ITERATIONS_A_SECOND_BEYOND };
+            let horizon = (a.seconds * rate) as u64;
             options.with_horizon(horizon.max(1000)).with_iterations(u64::MAX)
         }
     };

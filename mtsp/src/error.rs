@@ -139,6 +139,9 @@ pub enum Error {
     /// The operation is for closed routes from one depot without limits and forbidden pairs.
     #[error("this needs closed routes from one depot, without limits or forbidden pairs")]
     NotTheBasicVariant,
+    /// The operation is for vehicles that are interchangeable: same start, end and limit, no forbidden pairs.
+    #[error("this needs interchangeable vehicles: the same start, end and limit, and no forbidden pairs")]
+    VehiclesDiffer,
     /// The search found no routes within the limits; there may be some all the same.
     #[error("no routes within the limits were found; limits longer by {excess} each would suffice")]
     LimitsNotMet {

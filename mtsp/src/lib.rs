@@ -12,6 +12,7 @@
 //! | wanted | function |
 //! |---|---|
 //! | good routes | [`solve`], [`solve_with`] (progress, stop), [`solve_from`] (from given routes) |
+//! | the fewest vehicles under a limit | [`least_fleet`] |
 //! | routes from a clustering | [`assign`] |
 //! | routes from a tour | [`split`], [`k_splitour`] (with a proven factor) |
 //! | how good they can be | [`lower_bound`], [`Solution::gap`] |
@@ -55,6 +56,7 @@ mod error;
 mod fleet;
 mod improve;
 mod initial;
+mod least_fleet;
 pub mod lower_bound;
 mod objective;
 mod problem;
@@ -67,6 +69,7 @@ pub use cluster_first::assign;
 pub use error::{Error, List};
 pub use fleet::{Absorb, Fleet, Revisit, TargetId, VehicleId};
 pub use improve::{Options, Progress, solve, solve_from, solve_with};
+pub use least_fleet::{LeastFleet, least_fleet};
 pub use lower_bound::LowerBounds;
 pub use objective::Objective;
 pub use problem::{End, Problem};

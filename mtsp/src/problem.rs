@@ -270,6 +270,15 @@ impl<'a, M: Metric> Problem<'a, M> {
         free
     }
 
+    /// The same problem for the first vehicles only; all of them if there are fewer. For interchangeable vehicles, of which one stays.
+    pub(crate) fn with_first_vehicles(&self, vehicles: usize) -> Self {
+        let mut fewer = self.clone();
+        fewer.starts.truncate(vehicles.max(1));
+        fewer.ends.truncate(vehicles.max(1));
+        fewer.limits.truncate(vehicles.max(1));
+        fewer
+    }
+
     /// Whether some vehicle has a finite limit.
     #[must_use]
     pub fn has_limits(&self) -> bool {

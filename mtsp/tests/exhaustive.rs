@@ -4,7 +4,9 @@ mod common;
 
 use christofides::{Metric, christofides};
 use common::{instance, optimum};
-use mtsp::{End, Error, Objective, Options, Problem, assign, k_splitour, lower_bound, solve, split};
+use mtsp::{
+    End, Error, Objective, Options, Problem, assign, k_splitour, least_fleet, lower_bound, solve, split,
+};
 use proptest::prelude::*;
 
 /// Relative rounding of sums of up to twenty legs.
@@ -162,6 +164,33 @@ proptest! {
             prop_assert!(solution.lengths[vehicle] <= problem.route_length(vehicle, &other) * (1.0 + ROUNDING));
         }
         prop_assert!(solution.lower_bounds.makespan <= solution.makespan);
+    }
+
+    #[test]
+    fn the_least_fleet_is_the_least(instance in instance(7), share in 0.4..1.2f64, open in any::<bool>()) {
+        let metric = instance.metric();
+        let fleet_of = |m: usize| {
+            let problem = Problem::new(&metric, m).unwrap().with_service(instance.service.clone()).unwrap();
+            if open { problem.with_open_routes() } else { problem }
+        };
+        let least = |m: usize| optimum(&fleet_of(m), Objective::Makespan);
+        let most = 3;
+        let limit = share * least(1);
+        let problem = fleet_of(most).with_limits(vec![limit; most]).unwrap();
+        // Equality to rounding may go either way.
+        prop_assume!((1..=most).all(|m| (least(m) - limit).abs() > 1e-6 * limit || limit == 0.0));
+        let wanted = (1..=most).find(|&m| least(m) <= limit);
+        match least_fleet(&problem, &Options::default().with_iterations(ITERATIONS)) {
+            Ok(found) => {
+                let expected = if problem.targets().is_empty() { Some(0) } else { wanted };
+                prop_assert_eq!(Some(found.vehicles), expected);
+                prop_assert!(found.at_least <= found.vehicles);
+                let leaving = found.solution.routes.iter().filter(|route| !route.is_empty()).count();
+                prop_assert_eq!(leaving, found.vehicles);
+                prop_assert!(found.solution.makespan <= limit * (1.0 + 1e-9));
+            }
+            Err(_) => prop_assert!(wanted.is_none()),
+        }
     }
 
     #[test]

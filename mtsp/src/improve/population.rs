@@ -18,6 +18,9 @@ const KEPT: usize = 20;
 const STRETCH: u64 = 16;
 const LEAST_STRETCH: u64 = 1000;
 
+/// More targets than this get one annealing as long as the horizon: it is not long enough for more.
+const MANY: usize = 2000;
+
 /// Temperatures in mean arcs: of new solutions, of new ones when there is time for a few only, and of children.
 const HOT: f64 = 3.0;
 const HURRIED: f64 = 0.5;
@@ -33,8 +36,9 @@ struct Schedule {
 impl Schedule {
     fn new(options: &Options, n: usize) -> Self {
         let horizon = options.horizon.unwrap_or(options.iterations).min(options.iterations).max(1);
-        let annealings = (horizon / (STRETCH * n as u64).max(LEAST_STRETCH)).max(1);
-        let hot = if annealings < 4 { HURRIED } else { HOT };
+        let stretch = if n > MANY { horizon } else { (STRETCH * n as u64).max(LEAST_STRETCH) };
+        let annealings = (horizon / stretch).max(1);
+        let hot = if annealings < 4 && n <= MANY { HURRIED } else { HOT };
         let kept = (annealings / 2).clamp(2, KEPT as u64) as usize;
         Self { stretch: horizon / annealings, kept, hot }
     }
