@@ -21,6 +21,9 @@ pub struct Plan {
     pub warnings: Vec<Warning>,
     /// Targets that need not be circled, ascending: those that have vanished ([`Replanner`](crate::Replanner)).
     pub skipped: Vec<usize>,
+    /// Targets that were not where they are at the start, and since when they are (s after the mission's start): nobody has to
+    /// keep away from them earlier ([`Replanner`](crate::Replanner)).
+    pub known_since: Vec<(usize, f64)>,
 }
 
 /// A loiter circle: what is flown around a target, or around several merged ones.

@@ -67,6 +67,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         closest_approach: None,
         warnings: Vec::new(),
         skipped: Vec::new(),
+        known_since: Vec::new(),
     };
     delay_starts(&mut plan, mission);
     plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);

@@ -97,7 +97,8 @@ impl<'a> Race<'a> {
             return false;
         };
         let excess = draft.transition.duration - self.entrances[index].lower_bound;
-        !self.is_again[index]
+        !self.exhaustive
+            && !self.is_again[index]
             && excess > ODD.0 * self.least_excess() + ODD.1
             && self.expected(index) < to_beat
     }

@@ -130,7 +130,7 @@ pub(crate) fn start_delays(fleet: &[Option<Airborne>], separation: f64) -> Vec<f
 }
 
 /// Granularity of start delays (s).
-const DELAY_STEP: f64 = 0.25;
+pub(crate) const DELAY_STEP: f64 = 0.25;
 
 #[cfg(test)]
 mod tests {

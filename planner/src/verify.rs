@@ -141,7 +141,7 @@ impl Plan {
     ///
     /// Every transition's controls are integrated again by the adaptive integrator, from the state in which the vehicle
     /// really is: the loiter state (or hover) computed afresh from mission and entry. The end is compared with the next such
-    /// state; bounds, heights and safe distances are looked at between knots too; every target must be circled exactly once;
+    /// state; bounds, heights and safe distances (of the targets known at that time) are looked at between knots too; every target must be circled exactly once;
     /// vehicles must keep their separation at every moment in the air.
     #[must_use]
     pub fn verify(&self, mission: &Mission, tolerances: &Tolerances) -> Verification {
@@ -153,7 +153,13 @@ impl Plan {
             let mut here = pad;
             let mut time = planned.legs.first().map_or(0.0, |leg| leg.start_time);
             for (index, leg) in planned.legs.iter().enumerate() {
-                let check = check_leg(&pilot, &orbits, leg, &here, &pad).map(|seen| LegCheck {
+                let later: Vec<usize> = self
+                    .known_since
+                    .iter()
+                    .filter(|&&(_, since)| since >= leg.arrival_time())
+                    .map(|&(target, _)| target)
+                    .collect();
+                let check = check_leg(&pilot, &orbits, leg, (&here, &pad), &later).map(|seen| LegCheck {
                     vehicle,
                     leg: index,
                     ..seen
@@ -187,12 +193,18 @@ impl Plan {
 }
 
 /// What an independent integration of one leg's controls shows; `None` if its arrays make no trajectory.
-fn check_leg(pilot: &Pilot, orbits: &[Orbit], leg: &Leg, start: &Motion, pad: &Motion) -> Option<LegCheck> {
+fn check_leg(
+    pilot: &Pilot,
+    orbits: &[Orbit],
+    leg: &Leg,
+    (start, pad): (&Motion, &Motion),
+    not_yet_known: &[usize],
+) -> Option<LegCheck> {
     let goal = match leg.loiter {
         Some(loiter) => orbits.get(loiter.circle)?.at(loiter.entry),
         None => *pad,
     };
-    let seen = pilot.examine(&leg.transition, start)?;
+    let seen = pilot.examine_without(&leg.transition, start, not_yet_known)?;
     Some(LegCheck {
         vehicle: 0,
         leg: 0,

@@ -119,6 +119,56 @@ fn targets_wait_when_nobody_is_left_and_are_not_forgotten() {
     stands(&replanner);
 }
 
+/// One vehicle follows the other, which stays so long on its second circle that both would be there at once.
+#[test]
+fn a_vehicle_gives_way_by_further_turns_or_a_later_start() {
+    let fresh = replanner();
+    let mut plan = fresh.plan().clone();
+    let leader = plan.vehicles.iter().position(|vehicle| vehicle.route.len() > 1).unwrap();
+    let turn = std::f64::consts::TAU * plan.circles[0].radius / plan.circles[0].speed;
+    let gap = 3.0 * turn;
+    let mut follower = plan.vehicles[leader].clone();
+    follower.legs.iter_mut().for_each(|leg| leg.start_time += gap);
+    let legs = &mut plan.vehicles[leader].legs;
+    legs[1].loiter.as_mut().unwrap().duration += 2.0 * turn;
+    legs[2..].iter_mut().for_each(|leg| leg.start_time += 2.0 * turn);
+    let first = legs[0].clone();
+    // What the follower would have circled is circled by nobody now.
+    let harmless = Event::TargetVanishes(plan.vehicles[1 - leader].route[0]);
+    plan.vehicles[1 - leader] = follower.clone();
+
+    let in_the_air = follower.legs[0].start_time + 0.1;
+    assert!(in_the_air > first.end_time());
+    for time in [first.end_time() + 0.1, in_the_air] {
+        let mut replanner = Replanner::new(mission(), plan.clone()).unwrap();
+        let before = replanner.plan().clone();
+        let update = replanner.apply(time, &harmless).unwrap();
+        assert_eq!((update.vehicles, update.conflict), (vec![1 - leader], None), "{time}");
+        same_past(&before, replanner.plan(), &mission(), replanner.mission(), time);
+        let approach = replanner.plan().closest_approach.unwrap();
+        assert!(approach.distance >= replanner.mission().fleet.separation - 0.01);
+        let waited = &replanner.plan().vehicles[1 - leader];
+        let longer = waited.duration() - follower.duration();
+        if time < follower.start_time() {
+            assert!(waited.start_time() > follower.start_time() && longer.abs() < 1e-9);
+        } else {
+            // Whole turns, which end where they begin.
+            assert!(longer > 0.5 * turn && (longer / turn - (longer / turn).round()).abs() < 1e-6);
+        }
+    }
+}
+
+/// Nobody had to keep away from a target before it was there.
+#[test]
+fn a_target_that_appears_where_a_vehicle_has_flown_breaks_nothing() {
+    let mut replanner = replanner();
+    let leg = replanner.plan().vehicles[0].legs[0].clone();
+    let [x, y, _] =
+        replanner.plan().sample(replanner.mission(), 0, 0.4 * leg.transition.duration).unwrap().position;
+    replanner.apply(leg.end_time(), &Event::TargetAppears(Target::at([x, y]))).unwrap();
+    stands(&replanner);
+}
+
 #[test]
 fn a_new_target_on_the_way_is_flown_around() {
     let mut mission = mission();

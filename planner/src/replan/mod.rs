@@ -5,7 +5,9 @@
 //! | what of a flight is settled at a moment, and where it can still be changed | `settled.rs` |
 //! | who takes a target over, and where in its route | `insertion.rs` |
 //! | the legs of a changed route: those that stay are kept, the others solved | `refly.rs` |
+//! | vehicles that would come too close wait for each other | `give_way.rs` |
 
+mod give_way;
 mod insertion;
 mod refly;
 mod settled;
@@ -17,7 +19,6 @@ use crate::mission::{Mission, Target};
 use crate::options::{Options, Watch};
 use crate::plan::{Approach, Plan};
 use crate::planning::{calibrated, envelope};
-use crate::separation::{closest_pair, in_the_air};
 use crate::time_model::TimeModel;
 use crate::transition::Pilot;
 use settled::Settled;
@@ -47,7 +48,8 @@ pub struct Update {
     pub vehicles: Vec<usize>,
     /// Targets that wait because no vehicle is left that could take them; they are tried again at every later event.
     pub waiting: Vec<usize>,
-    /// Where airborne vehicles come closer than the mission's separation from now on: an operator must decide.
+    /// Where airborne vehicles come closer than the mission's separation from now on although none could give way in time: an
+    /// operator must decide.
     pub conflict: Option<Approach>,
 }
 
@@ -55,7 +57,8 @@ pub struct Update {
 ///
 /// What is being flown stays as it is: a vehicle in a loiter finishes it, one on its way to a circle flies there, unless that
 /// target is gone or the way now breaks a safe distance; then it turns off at the next knot of its trajectory that is at least
-/// [`Replanner::REACTION`] seconds away. No waiting target is lost, and none that has been circled is circled again.
+/// [`Replanner::REACTION`] seconds away. Vehicles that would come too close wait for each other, on a pad or by further turns of a
+/// loiter. No waiting target is lost, and none that has been circled is circled again.
 #[derive(Debug, Clone)]
 pub struct Replanner {
     mission: Mission,
@@ -170,6 +173,10 @@ impl Replanner {
                 changes.relieved_by = Some(vehicle);
             }
         }
+        for &target in &changes.keep_outs {
+            self.plan.known_since.retain(|&(known, _)| known != target);
+            self.plan.known_since.push((target, time));
+        }
         let problems = self.mission.problems();
         if problems.is_empty() { Ok(changes) } else { Err(Error::Mission { problems }) }
     }
@@ -229,7 +236,12 @@ impl Replanner {
             }
         }
         self.plan.skipped.sort_unstable();
-        let conflict = self.conflict(time);
+        let (waiting_for_others, closest) = give_way::give_way(&mut self.plan, &self.mission, time);
+        vehicles.extend(waiting_for_others);
+        vehicles.sort_unstable();
+        vehicles.dedup();
+        self.plan.closest_approach = closest;
+        let conflict = closest.filter(|approach| approach.distance < self.mission.fleet.separation);
         self.waiting.clone_from(&waiting);
         let flown = || self.plan.vehicles.iter();
         self.plan.certificate.makespan = flown().map(|vehicle| vehicle.end_time()).fold(0.0, f64::max);
@@ -238,19 +250,6 @@ impl Replanner {
         self.plan.certificate.makespan_lower_bound = 0.0;
         self.plan.certificate.total_lower_bound = 0.0;
         Ok(Update { vehicles, waiting, conflict })
-    }
-
-    /// Where airborne vehicles come too close after `time`.
-    fn conflict(&mut self, time: f64) -> Option<Approach> {
-        let approach = in_the_air(&self.plan, &self.mission, |mut fleet| {
-            for airborne in fleet.iter_mut().flatten() {
-                airborne.flight[0] = airborne.flight[0].max(time);
-            }
-            closest_pair(&fleet)
-        })
-        .flatten();
-        self.plan.closest_approach = approach;
-        approach.filter(|approach| approach.distance < self.mission.fleet.separation)
     }
 }
 

@@ -117,8 +117,33 @@ impl Pilot {
 
     /// The transition as an independent integration of its controls sees it; `None` if it is malformed.
     pub(crate) fn examine(&self, transition: &Transition, start: &Motion) -> Option<Examination> {
+        self.examine_near(transition, start, &self.keep_outs)
+    }
+
+    /// The same, without the safe distances of some targets.
+    pub(crate) fn examine_without(
+        &self,
+        transition: &Transition,
+        start: &Motion,
+        targets: &[usize],
+    ) -> Option<Examination> {
+        let mut keep_outs = self.keep_outs.clone();
+        for &target in targets {
+            if let Some(keep_out) = keep_outs.get_mut(target) {
+                keep_out.radius = f64::NEG_INFINITY;
+            }
+        }
+        self.examine_near(transition, start, &keep_outs)
+    }
+
+    fn examine_near(
+        &self,
+        transition: &Transition,
+        start: &Motion,
+        keep_outs: &[KeepOut],
+    ) -> Option<Examination> {
         let heights = self.settings.heights;
-        with_flight!(&self.airframe, flight => examine::examine(flight, transition, start, &self.keep_outs, heights))
+        with_flight!(&self.airframe, flight => examine::examine(flight, transition, start, keep_outs, heights))
     }
 
     /// The transition as a function of time; `None` if it is malformed.
