@@ -36,8 +36,8 @@ const WIDTH: usize = 16;
 ///
 /// Starts from the best of the paper's pipeline ([`assign`](crate::assign) after k-means, if the metric has coordinates) and a split
 /// Christofides tour, and improves it by annealed ruin and recreate (Christiaens and Vanden Berghe 2020, doi:10.1287/trsc.2019.0914):
-/// strings of targets are taken out of neighbouring routes and put back greedily. For the makespan the energy is a high power of
-/// the route lengths.
+/// strings of targets are taken out of neighbouring routes and put back greedily. For the makespan the energy is a sum of
+/// convex functions of the route lengths. Many short annealings make a population whose members exchange whole routes.
 ///
 /// # Guarantee
 /// Never worse than either start; with closed routes from one depot over a metric, hence at most 5/2 - 1/m times the least

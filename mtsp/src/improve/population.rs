@@ -6,6 +6,7 @@
 
 use super::anneal::{Annealer, Clock, Setting, Value, better};
 use super::arcs::Arcs;
+use super::energy::Shape;
 use super::options::Options;
 use super::random::Random;
 use super::state::State;
@@ -47,16 +48,16 @@ impl Schedule {
 /// Relative difference in value below which two solutions count as the same one.
 const ALIKE: f64 = 1e-7;
 
-/// Powers of the energy, as exponents of 2: 32 to 256. No single one is best on all instances, so a child mostly inherits that of a parent
-/// and those that do well here spread.
-const POWERS: [u32; 4] = [7, 6, 5, 8];
+/// Shapes of the energy: powers 128, 64, 256, and a knee. No single one is best on all instances, so a child mostly inherits that of a
+/// parent and those that do well here spread.
+const SHAPES: [Shape; 4] = [Shape::Power(7), Shape::Power(6), Shape::Knee, Shape::Power(8)];
 const INHERITED: f64 = 0.75;
 
 struct Member {
     value: Value,
     routes: Vec<Vec<u32>>,
-    /// The power of the energy with which it was annealed.
-    power: u32,
+    /// The shape of the energy with which it was annealed.
+    shape: Shape,
 }
 
 /// Improves `state` until the budget is spent; never ends with a worse one.
@@ -69,15 +70,15 @@ pub(crate) fn evolve<A: Arcs>(
     let schedule = Schedule::new(options, state.n);
     let mut annealer = Annealer::new(setting, Random::new(options.seed), state);
     let start = state.lists();
-    let mut best = Member { value: setting.value(state), routes: start.clone(), power: POWERS[0] };
+    let mut best = Member { value: setting.value(state), routes: start.clone(), shape: SHAPES[0] };
     clock.note(state);
     let mut pool: Vec<Member> = Vec::with_capacity(schedule.kept + 1);
     let mut round = 0;
     while !clock.stopped && !setting.is_good_enough(best.value) {
-        let mut power = POWERS[round % POWERS.len()];
+        let mut shape = SHAPES[round % SHAPES.len()];
         round += 1;
         if pool.len() < schedule.kept {
-            annealer.energy.set_squarings(power);
+            annealer.energy.set_shape(shape);
             *state = if pool.len().is_multiple_of(2) {
                 State::new(state.n, &start, setting.arcs)
             } else {
@@ -87,15 +88,15 @@ pub(crate) fn evolve<A: Arcs>(
         } else {
             let (first, second) = parents(&mut annealer.random, pool.len());
             if annealer.random.unit() < INHERITED {
-                power = pool[first].power;
+                shape = pool[first].shape;
             }
-            annealer.energy.set_squarings(power);
+            annealer.energy.set_shape(shape);
             *state = child(&mut annealer, &pool[first], &pool[second], state.n);
             annealer.run(state, schedule.stretch, WARM, best.value, clock);
         }
-        let member = Member { value: setting.value(state), routes: state.lists(), power };
+        let member = Member { value: setting.value(state), routes: state.lists(), shape };
         if better(member.value, best.value) {
-            best = Member { value: member.value, routes: member.routes.clone(), power };
+            best = Member { value: member.value, routes: member.routes.clone(), shape };
         }
         admit(&mut pool, member, schedule.kept);
     }
