@@ -122,8 +122,9 @@ fn targets_wait_when_nobody_is_left_and_are_not_forgotten() {
 /// One vehicle follows the other, which stays so long on its second circle that both would be there at once.
 #[test]
 fn a_vehicle_gives_way_by_further_turns_or_a_later_start() {
-    let fresh = replanner();
-    let mut plan = fresh.plan().clone();
+    let mut mission = mission();
+    mission.targets[0].position = [14.0, -10.0];
+    let mut plan = planner::plan(&mission, &Options::default()).unwrap();
     let leader = plan.vehicles.iter().position(|vehicle| vehicle.route.len() > 1).unwrap();
     let turn = std::f64::consts::TAU * plan.circles[0].radius / plan.circles[0].speed;
     let gap = 3.0 * turn;
@@ -140,11 +141,11 @@ fn a_vehicle_gives_way_by_further_turns_or_a_later_start() {
     let in_the_air = follower.legs[0].start_time + 0.1;
     assert!(in_the_air > first.end_time());
     for time in [first.end_time() + 0.1, in_the_air] {
-        let mut replanner = Replanner::new(mission(), plan.clone()).unwrap();
+        let mut replanner = Replanner::new(mission.clone(), plan.clone()).unwrap();
         let before = replanner.plan().clone();
         let update = replanner.apply(time, &harmless).unwrap();
         assert_eq!((update.vehicles, update.conflict), (vec![1 - leader], None), "{time}");
-        same_past(&before, replanner.plan(), &mission(), replanner.mission(), time);
+        same_past(&before, replanner.plan(), &mission, replanner.mission(), time);
         let approach = replanner.plan().closest_approach.unwrap();
         assert!(approach.distance >= replanner.mission().fleet.separation - 0.01);
         let waited = &replanner.plan().vehicles[1 - leader];
