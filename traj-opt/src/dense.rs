@@ -352,5 +352,8 @@ pub(crate) fn rank_one<const N: usize>(m: &mut Matrix<N, N>, a: f64, x: &SVector
 /// A vector from consecutive numbers.
 #[inline(always)]
 pub(crate) fn vector<const N: usize>(values: &[f64], offset: usize) -> SVector<f64, N> {
-    SVector::from_column_slice(&values[offset..offset + N])
+    // not from_column_slice, which goes number by number
+    let mut out = [0.0; N];
+    out.copy_from_slice(&values[offset..offset + N]);
+    SVector::from(out)
 }
