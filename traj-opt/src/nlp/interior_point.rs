@@ -37,9 +37,8 @@ const LENGTHEN: f64 = 3.0;
 const SHORT_STEP: f64 = 0.03;
 const SHORT_STEPS: usize = 4;
 const FAR_FROM_FEASIBLE: f64 = 1e-2;
-/// A guess that violates the constraints by more, in the scales of the states, is first moved towards feasibility; for a better one
-/// those steps cost more than they save.
-const INFEASIBLE_GUESS: f64 = 1.0;
+/// A guess that violates the constraints by more is first moved towards feasibility.
+const INFEASIBLE_GUESS: f64 = 0.1;
 /// Regularisation above which it is tried before none.
 const SKIP_TRIAL: f64 = 1e-4;
 /// By how much the regularisation falls from one iteration to the next; faster than IPOPT's 3, which costs iterations here.
