@@ -274,40 +274,16 @@ pub(crate) fn mul<const R: usize, const K: usize, const C: usize>(
     a: &Matrix<R, K>,
     b: &Matrix<K, C>,
 ) -> Matrix<R, C> {
-    let mut out = Matrix::<R, C>::zeros();
-    for j in 0..C {
-        let mut column = [0.0; R];
-        for k in 0..K {
-            axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
-        }
-        out.data.0[j] = column;
-    }
-    out
+    Separate::mul(a, b)
 }
 
-/// `a b` for an `a` of which some columns are zero: derivatives of a model by variables that it does not depend on.
+/// `a b` for an `a` of which some columns are zero.
 #[inline(always)]
 pub(crate) fn mul_thin<const R: usize, const K: usize, const C: usize>(
     a: &Matrix<R, K>,
     b: &Matrix<K, C>,
 ) -> Matrix<R, C> {
-    let mut used = [0; K];
-    let mut n_used = 0;
-    for k in 0..K {
-        if a.data.0[k].iter().any(|&v| v != 0.0) {
-            used[n_used] = k;
-            n_used += 1;
-        }
-    }
-    let mut out = Matrix::<R, C>::zeros();
-    for j in 0..C {
-        let mut column = [0.0; R];
-        for &k in &used[..n_used] {
-            axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
-        }
-        out.data.0[j] = column;
-    }
-    out
+    Separate::mul_thin(a, b)
 }
 
 /// `a x`.
@@ -316,11 +292,7 @@ pub(crate) fn mul_vec<const R: usize, const K: usize>(
     a: &Matrix<R, K>,
     x: &SVector<f64, K>,
 ) -> SVector<f64, R> {
-    let mut out = SVector::zeros();
-    for k in 0..K {
-        axpy(array_mut(&mut out), x[k], &a.data.0[k]);
-    }
-    out
+    Separate::mul_vec(a, x)
 }
 
 /// `a' x`.
@@ -352,5 +324,8 @@ pub(crate) fn rank_one<const N: usize>(m: &mut Matrix<N, N>, a: f64, x: &SVector
 /// A vector from consecutive numbers.
 #[inline(always)]
 pub(crate) fn vector<const N: usize>(values: &[f64], offset: usize) -> SVector<f64, N> {
-    SVector::from_column_slice(&values[offset..offset + N])
+    // not from_column_slice, which goes number by number
+    let mut out = [0.0; N];
+    out.copy_from_slice(&values[offset..offset + N]);
+    SVector::from(out)
 }

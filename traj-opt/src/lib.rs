@@ -18,8 +18,9 @@
 //! | choose a discretisation | [`Mesh`], [`Transcription`] |
 //! | solve it | [`solve`], [`solve_with`], [`Guess`], [`Options`] |
 //! | solve a neighbour of a solved problem | [`solve_from`] |
+//! | solve many problems of one kind | [`solve_batch`] |
 //! | use the result | [`Solution`], [`Status`] |
-//! | check it independently | [`Solution::integrate`], [`integrate`], [`segment_errors`], [`check_derivatives`] |
+//! | check it independently | [`Solution::integrate`], [`integrate`], [`segment_errors`], [`check_derivatives`], [`check_path_derivatives`] |
 //! | see what it leaves between the knots, or why it failed | [`Solution::greatest_violation`], [`Solution::diagnosis`] |
 //! | free the start time, link phases | [`FreeInitialTime`], [`Linked`] |
 //! | bound the minimum time from below | `least_time_bound` (feature `clarabel`) |
@@ -91,7 +92,7 @@
 //!
 //! # How it is tested
 //! Derivatives against automatic ones and central differences, costs against analytic switch times and the Riccati equation on
-//! generated problems, the conditions of optimality written out by hand from what a solution reports, guesses of time over eight
+//! generated problems, a counting allocator that sees none between iterations, the conditions of optimality written out by hand from what a solution reports, guesses of time over eight
 //! decades, infeasible problems, observed orders of convergence, twenty-five classic problems, fifty
 //! minimum-time quadcopter transitions for two models, each flown by the integrator.
 //!
@@ -107,11 +108,12 @@
 //! - E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, Springer, 1993.
 //!
 //! # Features
-//! `serde`: (de)serialisation of data types. `clarabel`: lower bounds by conic programming.
+//! `serde`: (de)serialisation of data types. `rayon`: batches over threads. `clarabel`: lower bounds by conic programming.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
 mod autodiff;
+mod batch;
 mod bounds;
 mod check;
 mod dense;
@@ -136,8 +138,9 @@ mod violation;
 
 pub use nalgebra;
 
+pub use batch::solve_batch;
 pub use bounds::Bounds;
-pub use check::check_derivatives;
+pub use check::{check_derivatives, check_path_derivatives};
 pub use dynamics::{Dynamics, Hessian, Jacobian};
 pub use error::{BoundKind, Error};
 pub use guess::Guess;

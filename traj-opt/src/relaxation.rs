@@ -97,7 +97,7 @@ impl BoundOptions {
 /// let mass = PointMass { start: [0.0; 3], start_velocity: [0.0; 3], end: [4.0, 0.0, 0.0], end_velocity: [0.0; 3],
 ///     acceleration: 1.0, bias: [0.0; 3], speed: 10.0 };
 /// let bound = least_time_bound(&mass, &BoundOptions::default())?;
-/// assert!(bound <= 4.0 && bound > 3.8); // exactly 2 sqrt(d/a) = 4
+/// assert!(bound <= 4.0 && bound > 3.7); // exactly 2 sqrt(d/a) = 4
 /// # Ok::<(), traj_opt::Error>(())
 /// ```
 pub fn least_time_bound(mass: &PointMass, options: &BoundOptions) -> Result<f64, Error> {

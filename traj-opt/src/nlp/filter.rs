@@ -12,6 +12,9 @@ const ETA: f64 = 1e-8;
 /// Safety factor of the least step (gamma_alpha).
 const GAMMA_ALPHA: f64 = 0.05;
 
+/// Iterations for which memory is set aside; a limit beyond means that there is none.
+pub(super) const MOST_RESERVED: usize = 10_000;
+
 /// Pairs of violation and barrier cost that no accepted point may be worse than in both.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Filter {
@@ -44,6 +47,12 @@ impl Filter {
         self.entries.clear();
         self.theta_max = 1e4 * theta.max(1.0);
         self.theta_min = 1e-4 * theta.max(1.0);
+    }
+
+    /// Makes room for as many entries as a solve can add: one a step and one a restoration, of which an iteration has at most one.
+    pub fn reserve(&mut self, max_iterations: usize) {
+        self.entries.clear();
+        self.entries.reserve(2 * (max_iterations.min(MOST_RESERVED) + 1));
     }
 
     pub fn clear(&mut self) {

@@ -15,10 +15,11 @@ use nalgebra::SVector;
 use std::ops::ControlFlow;
 
 /// Factor of the barrier error below which mu falls (kappa_epsilon), linear and superlinear decrease (kappa_mu, theta_mu), least
-/// fraction to the boundary (tau_min) and scaling threshold of residuals (s_max), all as in IPOPT.
+/// fraction to the boundary (tau_min) and scaling threshold of residuals (s_max), as in IPOPT but for the decrease: IPOPT's 0.2
+/// and 1.5 cost 6 % more iterations on the reference transitions.
 const KAPPA_EPSILON: f64 = 10.0;
-const KAPPA_MU: f64 = 0.2;
-const THETA_MU: f64 = 1.5;
+const KAPPA_MU: f64 = 0.1;
+const THETA_MU: f64 = 1.7;
 const TAU_MIN: f64 = 0.99;
 const S_MAX: f64 = 100.0;
 /// Penalty on end conditions in the recursion, relative to the scaled length of their gradients.

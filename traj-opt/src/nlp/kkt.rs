@@ -137,9 +137,15 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
                     }
                 }
             }
+            // products with all columns of su at a time: single dot products would not be vectorised
+            for (rp, panel) in lq.rp[k * m..(k + 1) * m].chunks_mut(LANES).zip(panels.iter()) {
+                let sums = A::combine([0.0; LANES], array(&hp), panel);
+                for (rp, sum) in rp.iter_mut().zip(sums) {
+                    *rp += sum;
+                }
+            }
             for j in 0..m {
                 let mut column = A::mul_vec(&hxx, &su[j]);
-                lq.rp[k * m + j] += A::dot(array(&su[j]), array(&hp));
                 if (NU..2 * NU).contains(&j) {
                     let own = hxu.column(j - NU).into_owned();
                     column += own;
@@ -157,8 +163,11 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
             // the columns of the middle control
             for i in 0..NU {
                 let own = hxu.column(i).into_owned();
-                for j in 0..m {
-                    lq.r[(k * m + j) * m + NU + i] += A::dot(array(&own), array(&su[j]));
+                for (piece, panel) in panels.iter().enumerate() {
+                    let sums = A::combine([0.0; LANES], array(&own), panel);
+                    for (j, sum) in (piece * LANES..m).zip(sums) {
+                        lq.r[(k * m + j) * m + NU + i] += sum;
+                    }
                 }
             }
         }

@@ -78,10 +78,11 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     }
 }
 
-struct Rows<'a, const NX: usize, const NU: usize> {
-    x: &'a mut [SVector<f64, NX>],
-    u: &'a mut [SVector<f64, NU>],
-    t: &'a mut [f64],
+/// Gradients of the path functions at one point.
+pub(crate) struct Rows<'a, const NX: usize, const NU: usize> {
+    pub x: &'a mut [SVector<f64, NX>],
+    pub u: &'a mut [SVector<f64, NU>],
+    pub t: &'a mut [f64],
 }
 
 fn out_rows<const NX: usize, const NU: usize>(
@@ -106,6 +107,17 @@ fn jacobian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         rows.t.fill(0.0);
         return;
     }
+    automatic_jacobian(problem, (t, x, u), timed, rows, scratch);
+}
+
+/// Gradients by automatic differentiation.
+pub(crate) fn automatic_jacobian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    problem: &P,
+    (t, x, u): At<NX, NU>,
+    timed: bool,
+    rows: &mut Rows<NX, NU>,
+    scratch: &mut Scratch<NX, NU>,
+) {
     let n = rows.x.len();
     problem.path(DualSVec64::from_re(t), &seed(x), &constant::<NU, NX>(u), &mut scratch.x[..n]);
     problem.path(DualSVec64::from_re(t), &constant::<NX, NU>(x), &seed(u), &mut scratch.u[..n]);
@@ -128,11 +140,23 @@ fn hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     weights: &[f64],
     scratch: &mut Scratch<NX, NU>,
 ) -> Hessian<NX, NU> {
-    let n = weights.len();
     let mut sum = Hessian::zeros();
     if !timed && problem.path_hessian(x, u, weights, &mut sum) {
         return sum;
     }
+    automatic_hessian(problem, (t, x, u), timed, weights, scratch)
+}
+
+/// Second derivatives by automatic differentiation.
+pub(crate) fn automatic_hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    problem: &P,
+    (t, x, u): At<NX, NU>,
+    timed: bool,
+    weights: &[f64],
+    scratch: &mut Scratch<NX, NU>,
+) -> Hessian<NX, NU> {
+    let n = weights.len();
+    let mut sum = Hessian::zeros();
     problem.path(Dual2SVec64::from_re(t), &seed2(x), &constant2::<NU, NX>(u), &mut scratch.xx[..n]);
     problem.path(Dual2SVec64::from_re(t), &constant2::<NX, NU>(x), &seed2(u), &mut scratch.uu[..n]);
     let (rows, columns) = (seed_rows::<NX, NU>(x), seed_columns::<NX, NU>(u));

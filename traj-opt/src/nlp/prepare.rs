@@ -1,6 +1,7 @@
 //! What a solve needs before its first iteration: memory of the right sizes, a starting point inside the bounds, scales.
 
 use super::barrier::DEFAULT_PUSH;
+use super::filter::MOST_RESERVED;
 use super::interior_point::{LEAST_DAMPING, Memory, StateScale};
 use super::program::Program;
 use super::setup;
@@ -55,7 +56,8 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.riccati.resize(n, m, nb, &self.free_start, program.free_time);
         self.scratch.resize(n_path.max(self.rows.n_functions));
         self.log.clear();
-        self.log.reserve(options.max_iterations + 1);
+        self.log.reserve(options.max_iterations.min(MOST_RESERVED) + 1);
+        self.filter.reserve(options.max_iterations);
         self.set_scales(program);
         setup::fill_bounds(program, &self.layout, &self.rows, &mut self.bounds);
         self.bounds.relax(RELAX);

@@ -122,11 +122,13 @@ impl<const NX: usize> Riccati<NX> {
         }
         for j in self.first_cross[k]..m {
             let cross = array(&lq.cross[k * m + j]);
-            for i in 0..m {
-                let (low, high) = (i.min(j), i.max(j));
-                let product = A::dot(array(&lq.b[k * m + i]), cross);
-                let twice = if i == j { 2.0 } else { 1.0 };
-                self.hessian[high / LANES * m + low][high % LANES] += twice * product;
+            for (piece, panel) in panels.iter().enumerate() {
+                let products = A::combine([0.0; LANES], cross, panel);
+                for (i, product) in (piece * LANES..m).zip(products) {
+                    let (low, high) = (i.min(j), i.max(j));
+                    let twice = if i == j { 2.0 } else { 1.0 };
+                    self.hessian[high / LANES * m + low][high % LANES] += twice * product;
+                }
             }
         }
         for i in 0..m {
