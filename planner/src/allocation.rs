@@ -33,14 +33,62 @@ impl Metric for Legs<'_> {
 }
 
 /// The circles of each vehicle in the order of their visits; spare vehicles get none.
-///
-/// The paper's pipeline measures routes by length, as the paper does; the optimising one by time, a leg between two circles
-/// counted as the least time for its length from loiter speed to loiter speed.
 pub(crate) fn routes(
     mission: &Mission,
     orbits: &[Orbit],
     envelope: &Envelope,
 ) -> Result<Vec<Vec<usize>>, Error> {
+    let solution = posed(mission, orbits, envelope, mission.fleet.vehicles, |problem| {
+        Ok(match mission.pipeline {
+            Pipeline::Paper => {
+                let clusters = mission.fleet.vehicles.min(orbits.len());
+                let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
+                let centres: Vec<[f64; 2]> = orbits.iter().map(|orbit| orbit.circle.centre).collect();
+                let labels = cluster::kmeans(&centres, clusters, &options).map(|found| found.labels)?;
+                assign(&problem, &labels)?
+            }
+            Pipeline::Optimised => {
+                let objective = match mission.objective {
+                    Objective::Makespan => mtsp::Objective::Makespan,
+                    Objective::Total => mtsp::Objective::Total,
+                };
+                mtsp::solve(&problem, &options(mission, orbits).with_objective(objective))?
+            }
+        })
+    })?;
+    let to_circles = |route: Vec<usize>| route.into_iter().map(|node| node - 1).collect();
+    Ok(solution.routes.into_iter().map(to_circles).collect())
+}
+
+/// The fewest vehicles found whose routes all cost at most `share` of the longest given route; `None` if there are none.
+pub(crate) fn fewest_vehicles(
+    mission: &Mission,
+    orbits: &[Orbit],
+    envelope: &Envelope,
+    routes: &[&[usize]],
+    share: f64,
+) -> Option<usize> {
+    let found = posed(mission, orbits, envelope, orbits.len(), |problem| {
+        let nodes = |route: &&[usize]| route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
+        let costs = routes.iter().map(nodes).map(|route| problem.route_length(0, &route));
+        let limit = share * costs.fold(0.0, f64::max);
+        let problem = problem.with_limits(vec![limit; orbits.len()])?;
+        Ok(mtsp::least_fleet(&problem, &options(mission, orbits))?)
+    });
+    found.ok().map(|found| found.vehicles)
+}
+
+/// What `ask` answers about the routing problem of a mission.
+///
+/// The paper's pipeline measures routes by length, as the paper does; the optimising one by time, a leg between two circles
+/// counted as the least time for its length from loiter speed to loiter speed.
+fn posed<R>(
+    mission: &Mission,
+    orbits: &[Orbit],
+    envelope: &Envelope,
+    vehicles: usize,
+    ask: impl FnOnce(Problem<Legs>) -> Result<R, Error>,
+) -> Result<R, Error> {
     let nodes: Vec<[f64; 2]> =
         std::iter::once(mission.depot).chain(orbits.iter().map(|orbit| orbit.circle.centre)).collect();
     let slowest = orbits.iter().map(|orbit| orbit.circle.speed).fold(f64::INFINITY, f64::min);
@@ -50,28 +98,13 @@ pub(crate) fn routes(
     let legs = Legs { nodes: &nodes, cost: if by_length { &length } else { &time } };
     let around = |orbit: &Orbit| if by_length { orbit.loiter.length() } else { orbit.loiter.duration() };
     let service = std::iter::once(0.0).chain(orbits.iter().map(around)).collect();
-    let problem = Problem::new(&legs, mission.fleet.vehicles)?.with_service(service)?;
-    let solution = match mission.pipeline {
-        Pipeline::Paper => {
-            let clusters = mission.fleet.vehicles.min(orbits.len());
-            let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
-            let labels = cluster::kmeans(&nodes[1..], clusters, &options).map(|found| found.labels)?;
-            assign(&problem, &labels)?
-        }
-        Pipeline::Optimised => {
-            let objective = match mission.objective {
-                Objective::Makespan => mtsp::Objective::Makespan,
-                Objective::Total => mtsp::Objective::Total,
-            };
-            let options = mtsp::Options::default()
-                .with_objective(objective)
-                .with_seed(mission.seed)
-                .with_iterations(ITERATIONS_PER_TARGET * orbits.len() as u64);
-            mtsp::solve(&problem, &options)?
-        }
-    };
-    let to_circles = |route: Vec<usize>| route.into_iter().map(|node| node - 1).collect();
-    Ok(solution.routes.into_iter().map(to_circles).collect())
+    ask(Problem::new(&legs, vehicles)?.with_service(service)?)
+}
+
+fn options(mission: &Mission, orbits: &[Orbit]) -> mtsp::Options {
+    mtsp::Options::default()
+        .with_seed(mission.seed)
+        .with_iterations(ITERATIONS_PER_TARGET * orbits.len() as u64)
 }
 
 /// Which route takes off from which pad: routes in the order of the bearings of their first circles, turned so that the sum of

@@ -14,10 +14,10 @@ use christofides::Metric;
 use mtsp::Problem;
 
 /// Least leg times between depot (node 0, standing for every pad) and circles (node `i + 1` for circle `i`).
-struct LeastTimes<'a> {
-    orbits: &'a [Orbit],
-    pads: &'a [[f64; 3]],
-    envelope: &'a Envelope,
+pub(crate) struct LeastTimes<'a> {
+    pub orbits: &'a [Orbit],
+    pub pads: &'a [[f64; 3]],
+    pub envelope: &'a Envelope,
 }
 
 impl Metric for LeastTimes<'_> {

@@ -1,8 +1,11 @@
 //! All that is wrong with a mission, found before any planning.
 
-use crate::circles::{geometry, groups, loiter_of};
+use crate::certificate::LeastTimes;
+use crate::circles::{geometry, groups, loiter_of, orbits};
 use crate::error::Problem;
 use crate::mission::{Entries, Mission, Model};
+use crate::planning::envelope;
+use christofides::Metric;
 
 /// Coordinates beyond this (m) are no local field any more, and lose millimetres in the solver.
 const FARTHEST: f64 = 1e5;
@@ -21,6 +24,9 @@ impl Mission {
         if problems.is_empty() {
             self.budget_problems(&mut problems);
             self.distance_problems(&mut problems);
+        }
+        if problems.is_empty() {
+            self.endurance_problems(&mut problems);
         }
         problems
     }
@@ -216,6 +222,20 @@ impl Mission {
                         safe_distance,
                     });
                 }
+            }
+        }
+    }
+
+    /// Targets that no vehicle can circle within its endurance, by the bounds of the certificate: proven, not estimated.
+    fn endurance_problems(&self, problems: &mut Vec<Problem>) {
+        let endurance = self.fleet.endurance;
+        let Some(orbits) = orbits(self).ok().filter(|_| endurance.is_finite()) else { return };
+        let (envelope, pads) = (envelope(self, &orbits), self.pads());
+        let legs = LeastTimes { orbits: &orbits, pads: &pads, envelope: &envelope };
+        for (i, orbit) in orbits.iter().enumerate() {
+            let least = 2.0 * legs.distance(0, i + 1) + orbit.circle.duration;
+            if least > endurance {
+                problems.push(Problem::BeyondEndurance { target: orbit.circle.members[0], least, endurance });
             }
         }
     }

@@ -144,6 +144,20 @@ pub enum Problem {
         /// Safe distance of the second (m).
         safe_distance: f64,
     },
+    /// No flight to a target and back is short enough for the vehicles.
+    #[error(
+        "fleet.endurance = {endurance} s: no flight to target {} and back takes less than {least:.1} s: \
+         raise the endurance, move the depot closer or leave the target out",
+        target + 1
+    )]
+    BeyondEndurance {
+        /// The target, from 0.
+        target: usize,
+        /// A proven lower bound on the time of a flight that circles only this target (s).
+        least: f64,
+        /// The endurance (s).
+        endurance: f64,
+    },
     /// A circle is outside the height limits.
     #[error(
         "the circle of target {} at height {height} m is outside transition.heights = [{}, {}]: widen the limits or change the height",
@@ -201,6 +215,7 @@ impl Problem {
             Self::CircleInsideSafeDistance { .. } => "loiter.radius",
             Self::DepotTooClose { .. } => "depot.position",
             Self::TargetsTooClose { .. } => "targets",
+            Self::BeyondEndurance { .. } => "fleet.endurance",
             Self::HeightOutsideLimits { .. } => "transition.heights",
             Self::TransitionBudget { .. } => "transition.thrust_budget",
             Self::ShapingBelowLoiter { .. } => "transition.shaping",

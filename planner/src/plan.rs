@@ -231,6 +231,21 @@ pub enum Warning {
         /// The endurance (s).
         endurance: f64,
     },
+    /// A vehicle needs more energy than its battery can give.
+    Battery {
+        /// The vehicle.
+        vehicle: usize,
+        /// Energy of its flight (J), see [`Plan::energy`].
+        energy: f64,
+        /// Energy that may be used (J).
+        usable: f64,
+    },
+    /// Endurance or battery are too small for so few vehicles.
+    MoreVehicles {
+        /// How many vehicles, or flights with a fresh battery each, the mission needs: found by routing with leg times scaled to those
+        /// of this plan, so an estimate.
+        needed: usize,
+    },
     /// There are more vehicles than routes.
     Spare {
         /// How many vehicles stay at the depot.

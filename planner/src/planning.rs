@@ -73,6 +73,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);
     plan.closest_approach = in_the_air(&plan, mission, |fleet| closest_pair(&fleet)).flatten();
     plan.warnings = warnings(&plan, mission);
+    plan.warnings.extend(more_vehicles(&plan, mission, &orbits, &envelope));
     Ok(plan)
 }
 
@@ -151,6 +152,22 @@ fn for_all<T: Send, R: Send>(
     done.into_iter().collect()
 }
 
+/// How many vehicles are needed where some fly longer than they can.
+fn more_vehicles(plan: &Plan, mission: &Mission, orbits: &[Orbit], envelope: &Envelope) -> Option<Warning> {
+    let shares = plan.warnings.iter().filter_map(|warning| match *warning {
+        Warning::Endurance { duration, endurance, .. } => Some(endurance / duration),
+        Warning::Battery { energy, usable, .. } => Some(usable / energy),
+        _ => None,
+    });
+    let share = shares.fold(1.0, f64::min);
+    let routes: Vec<&[usize]> = plan.vehicles.iter().map(|planned| &planned.route[..]).collect();
+    let needed = (share < 1.0)
+        .then(|| allocation::fewest_vehicles(mission, orbits, envelope, &routes, share))
+        .flatten()?;
+    // A longest route that is badly balanced may be too long although there are vehicles enough.
+    Some(Warning::MoreVehicles { needed: needed.max(1) })
+}
+
 fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let spare = plan.vehicles.iter().filter(|vehicle| vehicle.route.is_empty()).count();
@@ -161,6 +178,11 @@ fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
         let (duration, endurance) = (planned.duration(), mission.fleet.endurance);
         if duration > endurance {
             warnings.push(Warning::Endurance { vehicle, duration, endurance });
+        }
+        let usable = mission.fleet.vehicle.parameters().battery.usable_energy();
+        let energy = plan.energy(mission, vehicle).unwrap_or(0.0);
+        if energy > usable {
+            warnings.push(Warning::Battery { vehicle, energy, usable });
         }
         for (leg, planned) in planned.legs.iter().enumerate() {
             let failed =

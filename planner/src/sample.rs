@@ -57,6 +57,16 @@ impl<'a> Sampler<'a> {
             .unwrap_or_else(|| (hover(self.mission, planned.pad, planned.heading), Phase::Pad, None))
     }
 
+    /// Electrical energy of a vehicle's flight (J).
+    pub(crate) fn energy(&self, vehicle: usize) -> f64 {
+        let planned = &self.plan.vehicles[vehicle];
+        let steps = (planned.duration() / ENERGY_STEP).ceil().max(1.0);
+        let step = planned.duration() / steps;
+        let time = |i: usize| planned.start_time() + i as f64 * step;
+        let motions: Vec<Motion> = (0..=steps as usize).map(|i| self.motion(vehicle, time(i)).0).collect();
+        self.mission.fleet.vehicle.flight_energy(&motions, step)
+    }
+
     fn in_leg(
         &self,
         leg: &Leg,
@@ -77,7 +87,23 @@ impl<'a> Sampler<'a> {
     }
 }
 
+/// Step with which the power of a flight is summed up (s).
+const ENERGY_STEP: f64 = 0.1;
+
 impl Plan {
+    /// Electrical energy of a vehicle's flight (J), by momentum theory ([`Vehicle::power`](quad_dynamics::Vehicle::power)); 0 for a
+    /// spare vehicle.
+    ///
+    /// `None` if there is no such vehicle, or if `mission` is not the one that was planned.
+    #[must_use]
+    pub fn energy(&self, mission: &Mission, vehicle: usize) -> Option<f64> {
+        let planned = self.vehicles.get(vehicle)?;
+        if planned.legs.is_empty() {
+            return Some(0.0);
+        }
+        Some(Sampler::new(self, mission)?.energy(vehicle))
+    }
+
     /// Where a vehicle is `time` seconds after the mission's start; on its pad before and after its flight.
     ///
     /// `None` if there is no such vehicle, or if `mission` is not the one that was planned.

@@ -3,7 +3,7 @@
 use planner::quad_dynamics::{Vehicle, VehicleParameters};
 use planner::{
     Entries, Error, Failure, Mission, Model, Options, Outcome, Phase, Pipeline, Plan, Problem, Target,
-    Tolerances, plan,
+    Tolerances, Warning, plan,
 };
 
 /// Two vehicles, three targets; few entries, so that a test stays quick.
@@ -252,6 +252,49 @@ fn impossible_geometry_and_budgets_are_named() {
         [Problem::CircleInsideSafeDistance { target: 2, .. }, ..]
     ));
     assert!(matches!(problems(&|m| m.targets.clear())[..], [Problem::NoTargets]));
+}
+
+#[test]
+fn a_small_endurance_or_battery_is_named_with_what_is_needed() {
+    let mut mission = small(Model::ThrustRate);
+    mission.fleet.vehicles = 1;
+    let whole = planned(&mission);
+    let (duration, energy) = (whole.vehicles[0].duration(), whole.energy(&mission, 0).unwrap());
+    assert!(whole.warnings.is_empty() && energy > 0.0);
+    // Flown at 0.9 of twice the weight at most; power goes with the thrust to the power of 1.5.
+    let hovering = mission.fleet.vehicle.hover_power() * duration;
+    assert!(energy > hovering && energy < 1.8_f64.powf(1.5) * hovering, "{energy} J, {hovering} J hovering");
+
+    mission.fleet.endurance = 0.7 * duration;
+    let needed = |plan: &Plan| {
+        plan.warnings.iter().find_map(|warning| match warning {
+            Warning::MoreVehicles { needed } => Some(*needed),
+            _ => None,
+        })
+    };
+    let short = planned(&mission);
+    assert!(matches!(short.warnings[0], Warning::Endurance { vehicle: 0, .. }));
+    let vehicles = needed(&short).unwrap();
+    assert!((2..=3).contains(&vehicles), "{vehicles}");
+    mission.fleet.vehicles = vehicles;
+    assert_eq!(needed(&planned(&mission)), None);
+
+    let mut parameters = VehicleParameters::survey_450();
+    parameters.battery.energy = 0.7 * energy / parameters.battery.usable_share;
+    mission.fleet = planner::Fleet {
+        vehicles: 1,
+        vehicle: Vehicle::new(parameters).unwrap(),
+        endurance: f64::INFINITY,
+        ..mission.fleet
+    };
+    let weak = planned(&mission);
+    assert!(matches!(weak.warnings[0], Warning::Battery { vehicle: 0, .. }));
+    assert!(needed(&weak).unwrap() >= 2);
+
+    mission.fleet.endurance = 1.0;
+    let Err(Error::Mission { problems }) = plan(&mission, &Options::default()) else { panic!("planned") };
+    assert_eq!(problems.len(), mission.targets.len());
+    assert!(matches!(problems[0], Problem::BeyondEndurance { target: 0, endurance: 1.0, .. }));
 }
 
 /// Three safe distances that touch one another wall the pad in, and the only entry tried lies outside.

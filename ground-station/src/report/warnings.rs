@@ -14,6 +14,15 @@ fn line(warning: &Warning) -> String {
             "vehicle {} flies {duration:.0} s, longer than the endurance of {endurance:.0} s: use more vehicles or fewer targets",
             vehicle + 1
         ),
+        Warning::Battery { vehicle, energy, usable } => format!(
+            "vehicle {} needs {:.0} kJ, more than the {:.0} kJ that its battery can give: use more vehicles or fewer targets",
+            vehicle + 1,
+            1e-3 * energy,
+            1e-3 * usable
+        ),
+        Warning::MoreVehicles { needed } => {
+            format!("the mission needs about {needed} vehicles, or flights with a fresh battery each")
+        }
         Warning::Spare { vehicles } => {
             format!("{vehicles} vehicle(s) stay at the depot: there are more vehicles than routes")
         }
