@@ -1,11 +1,11 @@
 //! Who circles what, and in which order (the paper's Algorithm 2, or routes optimised for the objective).
 
-use crate::bound::Envelope;
+use crate::bound::{Drift, Envelope, LegTimes};
 use crate::circles::Orbit;
 use crate::error::Error;
 use crate::mission::{Mission, Objective, Pipeline};
-use christofides::Metric;
 use mtsp::{Problem, assign};
+use nalgebra::Vector2;
 
 /// Restarts of k-means, scikit-learn's long-standing default.
 const RESTARTS: usize = 10;
@@ -14,48 +14,24 @@ const RESTARTS: usize = 10;
 /// what longer runs gain.
 const ITERATIONS_PER_TARGET: u64 = 1000;
 
-/// The legs between depot (node 0) and circles (node `i + 1` for circle `i`).
-struct Legs<'a> {
-    nodes: &'a [[f64; 2]],
-    /// How long or costly a leg of a given length is: increasing, concave and 0 at 0, so that a metric stays a metric.
-    cost: &'a dyn Fn(f64) -> f64,
-}
-
-impl Metric for Legs<'_> {
-    fn len(&self) -> usize {
-        self.nodes.len()
-    }
-
-    fn distance(&self, i: usize, j: usize) -> f64 {
-        let ([ax, ay], [bx, by]) = (self.nodes[i], self.nodes[j]);
-        if i == j { 0.0 } else { (self.cost)((ax - bx).hypot(ay - by)) }
-    }
-}
-
 /// The circles of each vehicle in the order of their visits; spare vehicles get none.
 pub(crate) fn routes(
     mission: &Mission,
     orbits: &[Orbit],
     envelope: &Envelope,
 ) -> Result<Vec<Vec<usize>>, Error> {
-    let solution = posed(mission, orbits, envelope, mission.fleet.vehicles, |problem| {
-        Ok(match mission.pipeline {
-            Pipeline::Paper => {
-                let clusters = mission.fleet.vehicles.min(orbits.len());
-                let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
-                let centres: Vec<[f64; 2]> = orbits.iter().map(|orbit| orbit.circle.centre).collect();
-                let labels = cluster::kmeans(&centres, clusters, &options).map(|found| found.labels)?;
-                assign(&problem, &labels)?
-            }
-            Pipeline::Optimised => {
-                let objective = match mission.objective {
-                    Objective::Makespan => mtsp::Objective::Makespan,
-                    Objective::Total => mtsp::Objective::Total,
-                };
-                mtsp::solve(&problem, &options(mission, orbits).with_objective(objective))?
-            }
-        })
-    })?;
+    let (legs, service) = legs(mission, orbits, envelope);
+    let problem = Problem::new(&legs, mission.fleet.vehicles)?.with_service(service)?;
+    let solution = match mission.pipeline {
+        Pipeline::Paper => {
+            let clusters = mission.fleet.vehicles.min(orbits.len());
+            let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
+            let centres: Vec<[f64; 2]> = orbits.iter().map(|orbit| orbit.circle.centre).collect();
+            let labels = cluster::kmeans(&centres, clusters, &options).map(|found| found.labels)?;
+            assign(&problem, &labels)?
+        }
+        Pipeline::Optimised => mtsp::solve(&problem, &search(mission, orbits.len()))?,
+    };
     let to_circles = |route: Vec<usize>| route.into_iter().map(|node| node - 1).collect();
     Ok(solution.routes.into_iter().map(to_circles).collect())
 }
@@ -68,43 +44,51 @@ pub(crate) fn fewest_vehicles(
     routes: &[&[usize]],
     share: f64,
 ) -> Option<usize> {
-    let found = posed(mission, orbits, envelope, orbits.len(), |problem| {
-        let nodes = |route: &&[usize]| route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
-        let costs = routes.iter().map(nodes).map(|route| problem.route_length(0, &route));
-        let limit = share * costs.fold(0.0, f64::max);
-        let problem = problem.with_limits(vec![limit; orbits.len()])?;
-        Ok(mtsp::least_fleet(&problem, &options(mission, orbits))?)
-    });
-    found.ok().map(|found| found.vehicles)
+    let (legs, service) = legs(mission, orbits, envelope);
+    let problem = Problem::new(&legs, orbits.len()).ok()?.with_service(service).ok()?;
+    let nodes = |route: &&[usize]| route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
+    let costs = routes.iter().map(nodes).map(|route| problem.route_length(0, &route));
+    let limit = share * costs.fold(0.0, f64::max);
+    let problem = problem.with_limits(vec![limit; orbits.len()]).ok()?;
+    mtsp::least_fleet(&problem, &search(mission, orbits.len())).ok().map(|found| found.vehicles)
 }
 
-/// What `ask` answers about the routing problem of a mission.
+/// What legs between depot (node 0) and circles (node `i + 1` for circle `i`) and what loiters cost.
 ///
 /// The paper's pipeline measures routes by length, as the paper does; the optimising one by time, a leg between two circles
-/// counted as the least time for its length from loiter speed to loiter speed.
-fn posed<R>(
-    mission: &Mission,
-    orbits: &[Orbit],
-    envelope: &Envelope,
-    vehicles: usize,
-    ask: impl FnOnce(Problem<Legs>) -> Result<R, Error>,
-) -> Result<R, Error> {
-    let nodes: Vec<[f64; 2]> =
-        std::iter::once(mission.depot).chain(orbits.iter().map(|orbit| orbit.circle.centre)).collect();
+/// counted as the least time for its length from loiter speed to loiter speed. In still air that time is an increasing, concave
+/// function of a metric and 0 at 0, so a metric; in wind it depends on the direction of travel, and no bound of Christofides' is
+/// claimed.
+fn legs(mission: &Mission, orbits: &[Orbit], envelope: &Envelope) -> (LegTimes, Vec<f64>) {
+    let nodes: Vec<Vector2<f64>> = std::iter::once(mission.depot)
+        .chain(orbits.iter().map(|orbit| orbit.circle.centre))
+        .map(Vector2::from)
+        .collect();
     let slowest = orbits.iter().map(|orbit| orbit.circle.speed).fold(f64::INFINITY, f64::min);
-    let time = |length: f64| envelope.least_time(length, slowest, slowest);
-    let length = |length: f64| length;
     let by_length = mission.pipeline == Pipeline::Paper;
-    let legs = Legs { nodes: &nodes, cost: if by_length { &length } else { &time } };
+    let drift = mission.environment.is_windy().then(|| Drift::new(envelope, slowest, slowest));
+    let legs = LegTimes::new(nodes.len(), |i, j| {
+        let offset = nodes[j] - nodes[i];
+        match &drift {
+            _ if by_length => offset.x.hypot(offset.y),
+            Some(drift) => drift.least_time(offset, 0.0),
+            None => envelope.least_time(offset.x.hypot(offset.y), slowest, slowest),
+        }
+    });
     let around = |orbit: &Orbit| if by_length { orbit.loiter.length() } else { orbit.loiter.duration() };
-    let service = std::iter::once(0.0).chain(orbits.iter().map(around)).collect();
-    ask(Problem::new(&legs, vehicles)?.with_service(service)?)
+    (legs, std::iter::once(0.0).chain(orbits.iter().map(around)).collect())
 }
 
-fn options(mission: &Mission, orbits: &[Orbit]) -> mtsp::Options {
+/// What is sought, and for how long.
+fn search(mission: &Mission, circles: usize) -> mtsp::Options {
+    let objective = match mission.objective {
+        Objective::Makespan => mtsp::Objective::Makespan,
+        Objective::Total => mtsp::Objective::Total,
+    };
     mtsp::Options::default()
+        .with_objective(objective)
         .with_seed(mission.seed)
-        .with_iterations(ITERATIONS_PER_TARGET * orbits.len() as u64)
+        .with_iterations(ITERATIONS_PER_TARGET * circles as u64)
 }
 
 /// Which route takes off from which pad: routes in the order of the bearings of their first circles, turned so that the sum of

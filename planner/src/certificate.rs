@@ -4,14 +4,19 @@
 //! and to at most the loiter speeds. No motion does that in less than [`Envelope::least_time`]; loiter times are fixed by
 //! the mission. So every plan's times are at least those of some routes under these leg times, and no routes beat the
 //! lower bounds of `mtsp`. Nothing is fitted or calibrated.
+//!
+//! In a steady wind a leg takes longer one way than the other, and the bounds of `mtsp` for asymmetric distances would count
+//! the shorter way of each. Every route is closed, so `pi . (x_j - x_i)` with one vector `pi` may be added to every leg from `x_i`
+//! to `x_j` without changing the time of any route: chosen along the wind, it takes the difference away to first order.
 
-use crate::bound::Envelope;
+use crate::bound::{Drift, Envelope, LegTimes};
 use crate::circles::Orbit;
 use crate::error::Error;
 use crate::mission::Mission;
 use crate::plan::{Certificate, VehiclePlan};
 use christofides::Metric;
-use mtsp::Problem;
+use mtsp::{Problem, lower_bound};
+use nalgebra::Vector2;
 
 /// Least leg times between depot (node 0, standing for every pad) and circles (node `i + 1` for circle `i`).
 pub(crate) struct LeastTimes<'a> {
@@ -50,6 +55,49 @@ impl Metric for LeastTimes<'_> {
     }
 }
 
+/// Least leg times and loiter times in a steady wind, with the potential added to the legs.
+///
+/// Where that would leave a leg less than nothing, a part `delta` of every loiter's time is counted with the legs that lead to and
+/// from it, half with each: no route notices. Without a `delta` that would do there is no potential.
+fn in_wind(orbits: &[Orbit], pads: &[[f64; 3]], envelope: &Envelope) -> (LegTimes, Vec<f64>) {
+    let fastest = orbits.iter().map(|orbit| orbit.circle.speed).fold(0.0, f64::max);
+    let [between, leaving, landing] =
+        [[fastest, fastest], [0.0, fastest], [fastest, 0.0]].map(|[from, to]| Drift::new(envelope, from, to));
+    let places = |node: usize| -> Vec<(Vector2<f64>, f64)> {
+        match node.checked_sub(1).map(|circle| &orbits[circle].circle) {
+            None => pads.iter().map(|pad| (Vector2::new(pad[0], pad[1]), 0.0)).collect(),
+            Some(circle) => vec![(circle.centre.into(), circle.radius)],
+        }
+    };
+    let wind = envelope.wind();
+    let squares = envelope.level_flight()[1].powi(2) - wind.norm_squared();
+    let potential = if squares > 0.0 { wind / squares } else { Vector2::zeros() };
+    let legs = |potential: Vector2<f64>| {
+        LegTimes::new(orbits.len() + 1, |i, j| {
+            let drift = if i == 0 {
+                &leaving
+            } else if j == 0 {
+                &landing
+            } else {
+                &between
+            };
+            let (from, to) = (places(i), places(j));
+            let pairs = from.iter().flat_map(|a| to.iter().map(move |b| (b.0 - a.0, a.1 + b.1)));
+            let times = pairs.map(|(offset, slack)| drift.least_time(offset, slack) + potential.dot(&offset));
+            times.reduce(f64::min).unwrap_or(0.0)
+        })
+    };
+    let service = std::iter::once(0.0).chain(orbits.iter().map(|orbit| orbit.circle.duration));
+    let shares = |i: usize, j: usize| 0.5 * (f64::from(u8::from(i > 0)) + f64::from(u8::from(j > 0)));
+    let shifted = legs(potential);
+    let delta = shifted.pairs().map(|(i, j, time)| -time / shares(i, j)).fold(0.0, f64::max);
+    if delta > orbits.iter().map(|orbit| orbit.circle.duration).fold(f64::INFINITY, f64::min) {
+        return (legs(Vector2::zeros()), service.collect());
+    }
+    let times = shifted.map(|i, j, time| (time + delta * shares(i, j)).max(0.0));
+    (times, service.enumerate().map(|(node, time)| if node == 0 { 0.0 } else { time - delta }).collect())
+}
+
 /// The certificate of a finished plan.
 pub(crate) fn certificate(
     mission: &Mission,
@@ -58,10 +106,15 @@ pub(crate) fn certificate(
     vehicles: &[VehiclePlan],
 ) -> Result<Certificate, Error> {
     let pads = mission.pads();
-    let legs = LeastTimes { orbits, pads: &pads, envelope };
-    let service = std::iter::once(0.0).chain(orbits.iter().map(|orbit| orbit.circle.duration)).collect();
-    let problem = Problem::new(&legs, mission.fleet.vehicles)?.with_service(service)?;
-    let bounds = mtsp::lower_bound::both(&problem);
+    let n_vehicles = mission.fleet.vehicles;
+    let bounds = if mission.environment.is_windy() {
+        let (legs, service) = in_wind(orbits, &pads, envelope);
+        lower_bound::both(&Problem::new(&legs, n_vehicles)?.with_service(service)?)
+    } else {
+        let legs = LeastTimes { orbits, pads: &pads, envelope };
+        let service = std::iter::once(0.0).chain(orbits.iter().map(|orbit| orbit.circle.duration)).collect();
+        lower_bound::both(&Problem::new(&legs, n_vehicles)?.with_service(service)?)
+    };
     let durations = || vehicles.iter().map(VehiclePlan::duration);
     Ok(Certificate {
         makespan: durations().fold(0.0, f64::max),

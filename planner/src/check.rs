@@ -5,10 +5,13 @@ use crate::circles::{geometry, groups, loiter_of, orbits};
 use crate::error::Problem;
 use crate::mission::{Entries, Mission, Model};
 use crate::planning::envelope;
+use crate::transition::hover;
 use christofides::Metric;
 
 /// Coordinates beyond this (m) are no local field any more, and lose millimetres in the solver.
 const FARTHEST: f64 = 1e5;
+/// More wind than any vehicle flies in (m/s).
+const STRONGEST: f64 = 100.0;
 
 impl Mission {
     /// All that is wrong with the mission, in the order of its fields; empty if it can be planned.
@@ -126,6 +129,13 @@ impl Mission {
                 ranges.within(&field("safe_distance"), &[distance], 0.0, 1e4, "from 0 to 10000 (m)");
             }
         }
+        ranges.within(
+            "environment.wind",
+            &self.environment.wind,
+            -STRONGEST,
+            STRONGEST,
+            "from -100 to 100 (m/s)",
+        );
         ranges.within("targets.merge_within", &[self.merge_within], 0.0, FARTHEST, "from 0 to 100000 (m)");
         ranges.0
     }
@@ -148,19 +158,29 @@ impl Mission {
     fn budget_problems(&self, problems: &mut Vec<Problem>) {
         let vehicle = &self.fleet.vehicle;
         let transition = &self.transition;
-        let loiters =
-            (0..self.targets.len()).filter_map(|i| Some((i, loiter_of(self, self.radius(i)).ok()?)));
+        let mut seen = Vec::new();
+        let unlike = |i: &usize| {
+            let radius = self.radius(*i);
+            let first = !seen.contains(&radius);
+            if first {
+                seen.push(radius);
+            }
+            first
+        };
+        let loiters = (0..self.targets.len())
+            .filter(unlike)
+            .filter_map(|i| Some((i, loiter_of(self, self.radius(i)).ok()?)));
         if transition.model == Model::JerkLimited {
             for (target, loiter) in loiters {
                 let shaping = &transition.shaping;
-                let acceleration = loiter.speed * loiter.speed / self.radius(target);
+                let acceleration = loiter.speed() * loiter.speed() / self.radius(target);
                 let jerk = acceleration * loiter.angular_speed();
                 let mut below = |limit, value: f64, needed: f64| {
                     if value < needed * (1.0 - 1e-9) {
                         problems.push(Problem::ShapingBelowLoiter { limit, value, needed, target });
                     }
                 };
-                below("speed", shaping.speed, loiter.speed);
+                below("speed", shaping.speed, loiter.speed());
                 below("acceleration", shaping.acceleration, acceleration);
                 below("jerk", shaping.jerk, jerk);
                 if !problems.is_empty() {
@@ -170,8 +190,11 @@ impl Mission {
             return;
         }
         let available = transition.thrust_budget * vehicle.max_thrust();
-        let hover = vehicle.weight();
-        let needs = loiters.map(|(_, loiter)| (loiter.thrust, "the loiter")).chain([(hover * 1.01, "hover")]);
+        let still = vehicle.weight();
+        let in_wind = hover(self, [0.0; 3], 0.0).collective_thrust;
+        let hover = if self.environment.is_windy() { in_wind } else { still };
+        let needs =
+            loiters.map(|(_, loiter)| (loiter.thrust(), "the loiter")).chain([(hover * 1.01, "hover")]);
         let Some((needed, what)) = needs.max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
         if needed > available * (1.0 + 1e-9) {
             let least = (needed / vehicle.max_thrust() * 1000.0).ceil() / 1000.0;
@@ -226,10 +249,13 @@ impl Mission {
         }
     }
 
-    /// Targets that no vehicle can circle within its endurance, by the bounds of the certificate: proven, not estimated.
+    /// Targets that no vehicle can circle within its endurance, by the certificate's bounds for still air: proven, not estimated.
     fn endurance_problems(&self, problems: &mut Vec<Problem>) {
         let endurance = self.fleet.endurance;
-        let Some(orbits) = orbits(self).ok().filter(|_| endurance.is_finite()) else { return };
+        if endurance.is_infinite() || self.environment.is_windy() {
+            return;
+        }
+        let Ok(orbits) = orbits(self) else { return };
         let (envelope, pads) = (envelope(self, &orbits), self.pads());
         let legs = LeastTimes { orbits: &orbits, pads: &pads, envelope: &envelope };
         for (i, orbit) in orbits.iter().enumerate() {

@@ -2,17 +2,18 @@
 
 use crate::mission::{Mission, Model};
 use crate::plan::Circle;
-use quad_dynamics::{Loiter, LoiterSpec};
+use crate::round::Round;
+use quad_dynamics::LoiterSpec;
 
 /// A circle with the loiter flown on it.
 #[derive(Debug, Clone)]
 pub(crate) struct Orbit {
     pub circle: Circle,
-    pub loiter: Loiter,
+    pub loiter: Round,
 }
 
 /// The fastest loiter on a circle of `radius` (m) within the mission's limits.
-pub(crate) fn loiter_of(mission: &Mission, radius: f64) -> Result<Loiter, quad_dynamics::Error> {
+pub(crate) fn loiter_of(mission: &Mission, radius: f64) -> Result<Round, quad_dynamics::Error> {
     let settings = &mission.loiter;
     let shaping = &mission.transition.shaping;
     // An autopilot that shapes transitions shapes circles too.
@@ -27,7 +28,7 @@ pub(crate) fn loiter_of(mission: &Mission, radius: f64) -> Result<Loiter, quad_d
     let finite = |limit: f64| limit.is_finite().then_some(limit);
     spec.speed_limit = finite(settings.speed_limit.min(speed));
     spec.acceleration_limit = finite(settings.acceleration_limit.min(acceleration));
-    Loiter::new(&mission.fleet.vehicle, &spec)
+    Round::new(&mission.fleet.vehicle, &spec, &mission.environment)
 }
 
 /// Groups of targets that are circled as one, by first member; without merging every target is a group of its own.
@@ -62,17 +63,25 @@ pub(crate) fn geometry(mission: &Mission, members: &[usize]) -> ([f64; 2], f64, 
 
 /// All circles of a mission with their loiters.
 pub(crate) fn orbits(mission: &Mission) -> Result<Vec<Orbit>, quad_dynamics::Error> {
+    // In wind a loiter takes milliseconds to find, and most circles are alike.
+    let mut known: Vec<(f64, Round)> = Vec::new();
     let orbit = |members: Vec<usize>| {
         let (centre, radius, height) = geometry(mission, &members);
-        let loiter = loiter_of(mission, radius)?;
+        let loiter = match known.iter().find(|(alike, _)| *alike == radius) {
+            Some((_, loiter)) => loiter.clone(),
+            None => loiter_of(mission, radius)?,
+        };
+        if mission.environment.is_windy() {
+            known.push((radius, loiter.clone()));
+        }
         let circle = Circle {
             members,
             centre,
             radius,
             height,
             sweep: mission.loiter.sweep,
-            speed: loiter.speed,
-            limit: loiter.limit,
+            speed: loiter.speed(),
+            limit: loiter.limit(),
             duration: loiter.duration(),
         };
         Ok(Orbit { circle, loiter })

@@ -211,6 +211,7 @@ impl Problem {
             Self::NoVehicles => "fleet.vehicles",
             Self::NoTargets | Self::Unknown { .. } => "targets",
             Self::NotReplannable => "targets.merge_within",
+            Self::Loiter { source: quad_dynamics::Error::WindTooStrong { .. }, .. } => "environment.wind",
             Self::Loiter { .. } => "loiter",
             Self::CircleInsideSafeDistance { .. } => "loiter.radius",
             Self::DepotTooClose { .. } => "depot.position",

@@ -201,6 +201,9 @@ impl Airspace<'_> {
         sampled: &Arrival,
         candidates: &mut Vec<Candidate>,
     ) -> Option<Arrival> {
+        if !self.pilot.can_enter_anywhere(orbit) {
+            return self.freed_by_search(here, orbit, sampled, candidates);
+        }
         let goal = Goal::Circle(orbit, sampled.entry.direction);
         let hint = Hint::Neighbour(&sampled.transition);
         let to_beat = sampled.transition.duration;
@@ -218,6 +221,42 @@ impl Airspace<'_> {
             outcome: Outcome::Solved { duration: transition.duration },
         });
         Some(Arrival { entry, transition })
+    }
+
+    /// The same where the attitude changes round the circle: the angle is sought, first at half the distance of two samples
+    /// and then at ever smaller steps on the side that was faster.
+    fn freed_by_search(
+        &self,
+        here: &Motion,
+        orbit: &Orbit,
+        sampled: &Arrival,
+        candidates: &mut Vec<Candidate>,
+    ) -> Option<Arrival> {
+        const HALVINGS: usize = 4;
+        let mut step = 2.0 * std::f64::consts::PI / entry::n_entrances(Entries::Free) as f64;
+        let mut best: Option<Arrival> = None;
+        for _ in 0..HALVINGS {
+            let centre = best.as_ref().unwrap_or(sampled);
+            let tried = [step, -step].map(|turn| {
+                let entry = Entry { angle: centre.entry.angle + turn, ..sampled.entry };
+                let there = orbit.at(entry);
+                let (goal, hint) = (Goal::Motion(there), Hint::Neighbour(&centre.transition));
+                let to_beat = centre.transition.duration;
+                let draft = self.pilot.draft(here, goal, &there, hint, (Detail::Full, to_beat)).ok()?;
+                let transition = self.pilot.polish(here, goal, draft).ok()?;
+                (transition.duration < to_beat).then_some(Arrival { entry, transition })
+            });
+            let faster = tried
+                .into_iter()
+                .flatten()
+                .min_by(|a, b| a.transition.duration.total_cmp(&b.transition.duration));
+            best = faster.or(best);
+            step *= 0.5;
+        }
+        let Arrival { entry, transition } = best.as_ref()?;
+        let outcome = Outcome::Solved { duration: transition.duration };
+        candidates.push(Candidate { entry: Some(*entry), outcome });
+        best
     }
 
     pub(crate) fn to_pad(&self, here: &Motion, pad: [f64; 3]) -> (Option<Transition>, Vec<Candidate>) {

@@ -63,6 +63,7 @@ mod plan;
 mod planning;
 mod race;
 mod replan;
+mod round;
 mod sample;
 mod separation;
 mod time_model;
@@ -79,7 +80,7 @@ pub use traj_opt;
 pub use closed_loop::Flown;
 pub use error::{Error, Problem};
 pub use mission::{
-    Entries, Fleet, LoiterSettings, Mission, Model, Objective, Pipeline, Target, Transcription,
+    Entries, Environment, Fleet, LoiterSettings, Mission, Model, Objective, Pipeline, Target, Transcription,
     TransitionSettings,
 };
 pub use options::{Options, Progress};

@@ -3,6 +3,7 @@
 //! Everything is SI with angles in radians, in the local east-north-up frame (x east, y north, z up, heights above the
 //! ground). Files, degrees and geographic coordinates belong to the caller.
 
+use nalgebra::Vector3;
 use quad_dynamics::{LoiterYaw, ShapingLimits, Vehicle};
 
 /// A mission: who flies where, and within which limits.
@@ -22,6 +23,8 @@ pub struct Mission {
     pub loiter: LoiterSettings,
     /// How vehicles fly between circles.
     pub transition: TransitionSettings,
+    /// What they fly through.
+    pub environment: Environment,
     /// What must be circled.
     pub targets: Vec<Target>,
     /// Targets whose cluster has at most this diameter (m) are circled as one; 0 leaves every target alone.
@@ -116,6 +119,26 @@ impl Default for TransitionSettings {
     }
 }
 
+/// What the vehicles fly through. Default: still air.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Environment {
+    /// Steady wind (m/s): the velocity of the air towards east and north, everywhere and all the time.
+    pub wind: [f64; 2],
+}
+
+impl Environment {
+    /// The velocity of the air (m/s, east-north-up).
+    pub(crate) fn air(&self) -> Vector3<f64> {
+        let [east, north] = self.wind;
+        Vector3::new(east, north, 0.0)
+    }
+
+    /// Whether the air moves.
+    pub(crate) fn is_windy(&self) -> bool {
+        self.wind != [0.0, 0.0]
+    }
+}
+
 /// A model of the vehicle for transitions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Model {
@@ -201,6 +224,7 @@ impl Mission {
             fleet: Fleet { vehicles, vehicle, separation: 3.0, endurance: f64::INFINITY },
             loiter: LoiterSettings::default(),
             transition: TransitionSettings::default(),
+            environment: Environment::default(),
             targets,
             merge_within: 0.0,
             objective: Objective::Makespan,

@@ -100,7 +100,9 @@ pub(crate) fn envelope(mission: &Mission, orbits: &[Orbit]) -> Envelope {
     }
     let share = transition.thrust_budget.max(mission.loiter.thrust_budget);
     let (mass, drag) = (vehicle.mass(), vehicle.drag_coefficient());
-    Envelope::of_thrust(share * vehicle.max_thrust(), mass, drag, quad_dynamics::GRAVITY, fastest)
+    let still =
+        Envelope::of_thrust(share * vehicle.max_thrust(), mass, drag, quad_dynamics::GRAVITY, fastest);
+    still.with_wind(mission.environment.air().xy(), fastest)
 }
 
 /// The legs of every route, each leg by itself the fastest.
@@ -133,7 +135,8 @@ pub(crate) fn calibrated<'a>(
 ) -> TimeModel {
     let solved: Vec<_> = flights.flat_map(|(pad, route, legs)| airspace.solved(pad, route, legs)).collect();
     let [acceleration, speed] = airspace.envelope.level_flight();
-    TimeModel::new(acceleration, speed).calibrated(&solved)
+    let wind = airspace.mission.environment.air().xy();
+    TimeModel::new(acceleration, speed).in_wind(wind).calibrated(&solved)
 }
 
 /// Does something for every route; with the feature `rayon` side by side. The first error in order counts, on any number of

@@ -13,6 +13,8 @@ pub(crate) struct TimeModel {
     acceleration: f64,
     /// Greatest speed in level flight (m/s).
     speed: f64,
+    /// Velocity of the air: east, north (m/s).
+    wind: Vector2<f64>,
     offset: f64,
     slope: f64,
 }
@@ -23,7 +25,12 @@ const DIRECTIONS: usize = 16;
 impl TimeModel {
     /// Not calibrated yet.
     pub(crate) fn new(acceleration: f64, speed: f64) -> Self {
-        Self { acceleration, speed, offset: 0.0, slope: 1.0 }
+        Self { acceleration, speed, wind: Vector2::zeros(), offset: 0.0, slope: 1.0 }
+    }
+
+    /// The same where the air moves: east, north (m/s). Only the greatest speed over the ground changes.
+    pub(crate) fn in_wind(self, wind: Vector2<f64>) -> Self {
+        Self { wind, ..self }
     }
 
     /// The least-squares line through solved transitions: from, to, time (s). As it was if they determine none.
@@ -43,30 +50,34 @@ impl TimeModel {
         self.offset + self.slope * self.level(from, to)
     }
 
-    /// About how long a transition over a distance (m) takes that starts and ends at a speed (m/s) in its direction (s).
-    pub(crate) fn time_over(&self, distance: f64, speed: f64) -> f64 {
-        self.offset + self.slope * self.along(distance, speed, speed)
+    /// About how long a transition over an offset (m: east, north) takes that starts and ends at a speed (m/s) in its
+    /// direction (s).
+    pub(crate) fn time_over(&self, [east, north]: [f64; 2], speed: f64) -> f64 {
+        let distance = east.hypot(north);
+        let tail = if distance > 0.0 { (self.wind.x * east + self.wind.y * north) / distance } else { 0.0 };
+        self.offset + self.slope * self.along(tail, distance, speed, speed)
     }
 
     fn level(&self, from: &Motion, to: &Motion) -> f64 {
         let offset = (to.position - from.position).xy();
         let (v_0, v_1) = (from.velocity.xy(), to.velocity.xy());
-        let along = |n: Vector2<f64>| self.along(offset.dot(&n), v_0.dot(&n), v_1.dot(&n));
+        let along = |n: Vector2<f64>| self.along(self.wind.dot(&n), offset.dot(&n), v_0.dot(&n), v_1.dot(&n));
         (0..DIRECTIONS)
             .map(|i| (i as f64 / DIRECTIONS as f64 * std::f64::consts::TAU).sin_cos())
             .map(|(sin, cos)| along(Vector2::new(cos, sin)))
             .fold(offset.try_normalize(0.0).map_or(0.0, along), f64::max)
     }
 
-    /// Least time on a line, from speed to speed: the double integrator with bounded acceleration and speed.
-    fn along(&self, distance: f64, from: f64, to: f64) -> f64 {
+    /// Least time on a line, from speed to speed: the double integrator with bounded acceleration and speed, the latter raised
+    /// by the wind along the line.
+    fn along(&self, tail: f64, distance: f64, from: f64, to: f64) -> f64 {
         let a = self.acceleration;
         let direct = (to - from).abs() / a;
         if distance <= 0.5 * (from + to) * direct {
             return direct;
         }
         let peak = (a * distance + 0.5 * (from * from + to * to)).max(0.0).sqrt();
-        let v = self.speed.max(from).max(to);
+        let v = (self.speed + tail).max(0.1 * self.speed).max(from).max(to);
         if peak <= v {
             return (2.0 * peak - from - to) / a;
         }

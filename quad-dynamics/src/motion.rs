@@ -43,13 +43,20 @@ impl Motion {
     /// Hovering at `position` (m) with body x at `yaw` (rad from east), in still air.
     #[must_use]
     pub fn hover(vehicle: &Vehicle, position: Vector3<f64>, yaw: f64) -> Self {
+        Self::hover_in_wind(vehicle, position, yaw, Vector3::zeros())
+    }
+
+    /// Hovering at `position` (m) in a steady `wind` (m/s, world) with body x at `yaw` (rad from east), leaning into the wind:
+    /// the thrust is `m g e_z - (c_d/2) |wind| wind`.
+    #[must_use]
+    pub fn hover_in_wind(vehicle: &Vehicle, position: Vector3<f64>, yaw: f64, wind: Vector3<f64>) -> Self {
         let zero = Vector3::zeros();
         let kinematics = Kinematics {
             position,
             velocity: zero,
             acceleration: zero,
             jerk: zero,
-            force: Vector3::new(0.0, 0.0, vehicle.weight()),
+            force: Vector3::new(0.0, 0.0, vehicle.weight()) - vehicle.drag(&-wind),
             force_rate: zero,
         };
         Self::from_kinematics(vehicle, &kinematics, Heading::Yaw(yaw))

@@ -26,13 +26,16 @@
 //! `rho = max(c s - k s^2, (k V - c) V)` with `s = min(c/(2k), V)`. `V(q)` is the least of what can be reached from the first
 //! velocity in `T - q`, what can be slowed down to the last velocity in `q`, and what no thrust exceeds: see `speeds.rs`.
 //!
+//! *Wind*: in the frame that moves with a steady wind `w` the air is still and thrust, gravity and attitude are what they are.
+//! All of the above holds there, with `v - w` for both velocities and `p_1 - p_0 - w T` for the offset, which is linear in `T`.
+//!
 //! *Between grid points in `q`*: in a cell with constant `c`, `lambda` moves on a straight line in `E = exp(-c q)`, and `S` with
 //! its two cones held as wide as anywhere in the cell, like `|lambda|`, is convex in `lambda`. So its mean over a cell is at
 //! most the chord's, whose weights are exact.
 //!
 //! *Between grid points in `T`*: for all `T` in `[T_a, T_b]` the cones and speeds are those of `T_b`, where they are widest,
-//! the last cell `[T_a, T_b]` counts only if it is positive, and `lambda(T) . v_0` is linear in `E` there: its greatest value
-//! is at one of the ends.
+//! the last cell `[T_a, T_b]` counts only if it is positive, and `lambda(T) . v_0` is linear in `E` there, as the wind's part of
+//! the offset is in `T`: their greatest values are at one of the ends.
 
 use super::costate::Costate;
 use super::speeds::Speeds;
@@ -48,14 +51,32 @@ pub(crate) struct Agility {
     pub drag: f64,
     /// How fast the thrust axis turns at most (rad/s); infinite if it may jump.
     pub turn_rate: f64,
+    /// Velocity of the air (m/s, east-north-up).
+    pub wind: [f64; 3],
 }
 
 /// A flight from one motion to another, as far as the bound knows it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passage {
-    pub offset: Vector3<f64>,
+    /// Over the ground (m).
+    offset: Vector3<f64>,
+    /// Of the air (m/s).
+    wind: Vector3<f64>,
+    /// Through the air (m/s).
     pub velocities: [Vector3<f64>; 2],
     pub axes: [Vector3<f64>; 2],
+}
+
+impl Passage {
+    /// Offset through the air in a flight of `time` (s).
+    pub(super) fn offset(&self, time: f64) -> Vector3<f64> {
+        self.offset - self.wind * time
+    }
+
+    /// A length (m) to which no offset in a flight of up to `time` (s) is large.
+    pub(super) fn size(&self, time: f64) -> f64 {
+        1.0 + self.offset.norm() + self.wind.norm() * time
+    }
 }
 
 /// Rounding must never lift a bound above the truth.
@@ -69,11 +90,16 @@ impl Agility {
     /// A time (s) in which no admissible motion leads from one motion to the other, nor in any shorter one; `proved` is such a
     /// time already known, from which the search starts.
     pub(crate) fn least_time(&self, from: &Motion, to: &Motion, proved: f64) -> f64 {
+        let wind = Vector3::from(self.wind);
         let passage = Passage {
             offset: to.position - from.position,
-            velocities: [from.velocity, to.velocity],
+            wind,
+            velocities: [from.velocity - wind, to.velocity - wind],
             axes: [from, to].map(|motion| motion.attitude * Vector3::z()),
         };
+        if passage.offset.norm() <= 1e-9 {
+            return proved;
+        }
         let mut bound = proved.max(1e-3);
         let speeds = Speeds::new(self, &passage, 1.5 * bound);
         let Some(mut costate) = Costate::first(&passage, bound) else { return proved };
@@ -110,7 +136,8 @@ mod tests {
     use proptest::prelude::*;
     use quad_dynamics::{GRAVITY, Vehicle, VehicleParameters};
 
-    const VEHICLE: Agility = Agility { thrust: [0.981, 19.62], drag: 0.05, turn_rate: 8.485_281_374_238_571 };
+    const VEHICLE: Agility =
+        Agility { thrust: [0.981, 19.62], drag: 0.05, turn_rate: 8.485_281_374_238_571, wind: [0.0; 3] };
 
     fn motion(position: Vector3<f64>, velocity: Vector3<f64>, attitude: UnitQuaternion<f64>) -> Motion {
         let vehicle = Vehicle::new(VehicleParameters::survey_450()).unwrap();
@@ -165,8 +192,10 @@ mod tests {
             drag in prop::sample::select(vec![0.0, 0.05, 0.3]),
             proved in 0.0..1.0,
             turn_rate in prop::sample::select(vec![0.5, 8.0, f64::INFINITY]),
+            wind in prop::sample::select(vec![[0.0; 3], [4.0, -3.0, 0.0], [-9.0, 1.0, 0.5]]),
         ) {
-            let agility = Agility { drag, turn_rate, ..VEHICLE };
+            let agility = Agility { drag, turn_rate, wind, ..VEHICLE };
+            let wind = Vector3::from(wind);
             let unit = |v: [f64; 3]| Unit::try_new(Vector3::from(v), 1e-6).unwrap_or(Vector3::z_axis());
             let attitude = |axis: &Unit<Vector3<f64>>| {
                 UnitQuaternion::rotation_between(&Vector3::z(), axis)
@@ -185,7 +214,7 @@ mod tests {
                         let turned = (turn_rate * step / apart).min(1.0);
                         axis = axis.try_slerp(&wanted, turned, 1e-12).unwrap_or(axis);
                     }
-                    let a = *axis * thrust - Vector3::z() * GRAVITY - v * (drag * v.norm());
+                    let a = *axis * thrust - Vector3::z() * GRAVITY - (v - wind) * (drag * (v - wind).norm());
                     p += step * (v + a * (0.5 * step));
                     v += a * step;
                     time += step;

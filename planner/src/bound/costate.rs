@@ -22,7 +22,7 @@ pub(super) struct Costate {
 impl Costate {
     /// The costate that reverses half-way, in the direction of the offset; `None` if there is no such direction.
     pub(super) fn first(passage: &Passage, time: f64) -> Option<Self> {
-        let n = passage.offset.try_normalize(1e-9)?;
+        let n = passage.offset(time).try_normalize(1e-9)?;
         let half = 0.5 * time;
         Some(Self { n, mu: (Vector3::z() * 0.3 - n) * half })
     }
@@ -40,7 +40,8 @@ impl Costate {
         [first, last]: [f64; 2],
     ) -> bool {
         let [v_0, v_1] = passage.velocities;
-        let mut most = -self.mu.dot(&v_1) - self.n.dot(&passage.offset);
+        let along = self.n.dot(&passage.offset(first)).min(self.n.dot(&passage.offset(last)));
+        let mut most = -self.mu.dot(&v_1) - along;
         let mut starts = f64::NEG_INFINITY;
         let mut size = self.mu.norm();
         for cell in cells(agility, speeds, [first, last]) {
@@ -59,18 +60,19 @@ impl Costate {
             }
             size = size.max(ends[1].norm());
         }
-        most + starts < -1e-9 * size * (1.0 + passage.offset.norm())
+        most + starts < -1e-9 * size * passage.size(last)
     }
 
     /// Some damped Newton steps on the convex function that must become negative for a time of `time`.
     pub(super) fn improve(&mut self, agility: &Agility, passage: &Passage, speeds: &Speeds, time: f64) {
         const STEPS: usize = 4;
         // One component of n is held: the function is homogeneous, and only the direction of (n, mu) counts.
-        let Some(along) = passage.offset.try_normalize(1e-9) else { return };
+        let offset = passage.offset(time);
+        let Some(along) = offset.try_normalize(1e-9) else { return };
         let held = Vector6::new(along.x, along.y, along.z, 0.0, 0.0, 0.0);
         let cells: Vec<Cell> = cells(agility, speeds, [time, time]).collect();
         let mut damping = 1e-3;
-        let mut here = self.expand(agility, passage, &cells);
+        let mut here = self.expand(agility, passage, &offset, &cells);
         for _ in 0..STEPS {
             let (value, gradient, hessian) = here;
             let mut step = None;
@@ -84,7 +86,7 @@ impl Costate {
                 let mut moved = *self;
                 moved.n += move_by.fixed_rows::<3>(0);
                 moved.mu += move_by.fixed_rows::<3>(3);
-                let there = moved.expand(agility, passage, &cells);
+                let there = moved.expand(agility, passage, &offset, &cells);
                 if there.0 < value {
                     damping *= 0.2;
                     step = Some((moved, there));
@@ -99,11 +101,17 @@ impl Costate {
     }
 
     /// Value, gradient and an approximate Hessian of the function, by the midpoints of the cells.
-    fn expand(&self, agility: &Agility, passage: &Passage, cells: &[Cell]) -> (f64, Vector6, Matrix6) {
+    fn expand(
+        &self,
+        agility: &Agility,
+        passage: &Passage,
+        offset: &Vector3<f64>,
+        cells: &[Cell],
+    ) -> (f64, Vector6, Matrix6) {
         let [v_0, v_1] = passage.velocities;
         let [a, b] = cells.last().map_or([0.0, 1.0], |cell| cell.weights[1]);
-        let mut value = self.at([a, b]).dot(&v_0) - self.mu.dot(&v_1) - self.n.dot(&passage.offset);
-        let mut gradient = stacked(&(v_0 * a - passage.offset), &(v_0 * b - v_1));
+        let mut value = self.at([a, b]).dot(&v_0) - self.mu.dot(&v_1) - self.n.dot(offset);
+        let mut gradient = stacked(&(v_0 * a - offset), &(v_0 * b - v_1));
         let mut hessian = Matrix6::zeros();
         for cell in cells {
             let h = cell.length;

@@ -18,6 +18,11 @@
 //! `D(T_f) < x(T_f) - x(0)` cannot be. `V` itself: `m |v|' <= T + m g - (c/2)|v|^2`, so `|v|` never exceeds the larger of its
 //! first value and `sqrt(2 (T + m g)/c)`. Thrust over *all* directions is allowed here, so the bound holds for every model
 //! whose thrust is at most `T`; attitude and rates only take freedom away. The bound is the largest over several `n`.
+//!
+//! *In a steady wind `w`* the same holds in the frame that moves with the air, where `s` is less by `w_n = w . n` and the way to
+//! cover is `x(T_f) - x(0) - w_n T_f`: a `T_f` with `D(T_f) + w_n T_f < x(T_f) - x(0)` cannot be, nor can one before both speeds
+//! can meet. From there on `D' = min(F, B)` where the two cross, which rises with `T_f`: the left side is convex, and once it has
+//! been below the right one it crosses it only once.
 
 use nalgebra::Vector2;
 use quad_dynamics::{GRAVITY, Motion};
@@ -29,8 +34,10 @@ pub(crate) struct Envelope {
     acceleration: f64,
     /// `k`: drag coefficient over twice the mass (1/m).
     drag: f64,
-    /// `V`: speed that is never exceeded (m/s).
+    /// `V`: speed through the air that is never exceeded (m/s).
     top_speed: f64,
+    /// Velocity of the air: east, north (m/s).
+    wind: Vector2<f64>,
 }
 
 /// A drag so small that it moves no bound by more than the rounding allowance, for models without drag.
@@ -52,12 +59,22 @@ impl Envelope {
     pub(crate) fn of_thrust(thrust: f64, mass: f64, drag: f64, gravity: f64, speed: f64) -> Self {
         let k = (drag / (2.0 * mass)).max(NEGLIGIBLE_DRAG);
         let terminal = ((thrust / mass + gravity) / k).sqrt();
-        Self { acceleration: thrust / mass, drag: k, top_speed: terminal.max(speed) }
+        Self { acceleration: thrust / mass, drag: k, top_speed: terminal.max(speed), wind: Vector2::zeros() }
+    }
+
+    /// The same in a steady wind (m/s), for vehicles whose first speed over the ground is at most `speed` (m/s).
+    pub(crate) fn with_wind(self, wind: Vector2<f64>, speed: f64) -> Self {
+        Self { wind, top_speed: self.top_speed.max(speed + wind.norm()), ..self }
+    }
+
+    /// Velocity of the air: east, north (m/s).
+    pub(crate) fn wind(&self) -> Vector2<f64> {
+        self.wind
     }
 
     /// Of a vehicle whose speed and acceleration are bounded and which feels no drag.
     pub(crate) fn of_limits(speed: f64, acceleration: f64) -> Self {
-        Self { acceleration, drag: NEGLIGIBLE_DRAG, top_speed: speed }
+        Self { acceleration, drag: NEGLIGIBLE_DRAG, top_speed: speed, wind: Vector2::zeros() }
     }
 
     /// About the greatest acceleration and speed (m/s^2, m/s) while part of the thrust carries the weight.
@@ -68,25 +85,33 @@ impl Envelope {
     }
 
     /// The speed at which drag eats all of the acceleration, or the top speed if that is less.
-    fn asymptote(&self) -> f64 {
+    pub(super) fn asymptote(&self) -> f64 {
         (self.acceleration / self.drag).sqrt().min(self.top_speed)
     }
 
-    /// Least time (s) from speed `from` to speed `to` over `distance` (m) along one line; 0 if nothing can be said.
+    /// Least time (s) from speed `from` to speed `to` over `distance` (m) along one line in still air; 0 if nothing can be said.
     pub(crate) fn least_time(&self, distance: f64, from: f64, to: f64) -> f64 {
+        self.least_time_with(0.0, distance, from, to)
+    }
+
+    /// The same over the ground with the wind blowing at `tail` (m/s) along the line; infinite if it cannot be done.
+    pub(super) fn least_time_with(&self, tail: f64, distance: f64, from: f64, to: f64) -> f64 {
+        let (from, to) = (from - tail, to - tail);
         let floor = from.max(to);
         let asymptote = self.asymptote();
         if floor >= asymptote * (1.0 - 1e-9) {
             // Faster than drag would allow: all that is certain is the top speed.
-            return if self.top_speed > 0.0 {
-                (distance / self.top_speed.max(floor)).max(0.0) * ROUND_DOWN
+            let fastest = self.top_speed.max(floor) + tail;
+            return if self.top_speed > 0.0 && fastest > 0.0 {
+                (distance / fastest).max(0.0) * ROUND_DOWN
             } else {
                 0.0
             };
         }
         let through = |peak: f64| {
             let (forward, backward) = (self.speeding_up(from, peak), self.braking(peak, to));
-            Reach { time: forward.time + backward.time, distance: forward.distance + backward.distance }
+            let time = forward.time + backward.time;
+            Reach { time, distance: forward.distance + backward.distance + tail * time }
         };
         let direct = through(floor);
         if direct.distance >= distance {
@@ -95,7 +120,11 @@ impl Envelope {
         let (mut low, mut high) = (floor, asymptote * (1.0 - 1e-9));
         let widest = through(high);
         if widest.distance <= distance {
-            return (widest.time + (distance - widest.distance) / asymptote) * ROUND_DOWN;
+            let cruise = asymptote + tail;
+            if cruise <= 0.0 {
+                return f64::INFINITY;
+            }
+            return (widest.time + (distance - widest.distance) / cruise) * ROUND_DOWN;
         }
         // Bisection to the last bit or nearly so.
         for _ in 0..60 {
@@ -161,7 +190,9 @@ impl Envelope {
     }
 
     fn least_time_over(&self, offset: Vector2<f64>, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
-        let along = |n: Vector2<f64>| self.least_time(offset.dot(&n), from.dot(&n), to.dot(&n));
+        let along = |n: Vector2<f64>| {
+            self.least_time_with(self.wind.dot(&n), offset.dot(&n), from.dot(&n), to.dot(&n))
+        };
         let straight = offset.try_normalize(0.0).map_or(0.0, along);
         // Any set of directions gives a valid bound; more of them gain less than 1 %.
         const DIRECTIONS: usize = 32;
@@ -237,21 +268,24 @@ mod tests {
             velocity in prop::array::uniform3(-9.0..9.0),
             forces in prop::collection::vec((prop::array::uniform3(-1.0..1.0), 0.0..1.0), 1..8),
             pause in 0.02..0.6,
+            wind in prop::sample::select(vec![[0.0, 0.0], [5.0, 2.0], [-3.0, 9.0]]),
         ) {
             let velocity: [f64; 3] = velocity;
             let start = velocity;
             let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
-            let envelope = Envelope::of_thrust(THRUST, MASS, DRAG, GRAVITY, speed);
+            let envelope =
+                Envelope::of_thrust(THRUST, MASS, DRAG, GRAVITY, speed).with_wind(wind.into(), speed);
             let (mut p, mut v, mut time) = ([0.0; 3], velocity, 0.0);
             let step = 1e-4;
             for (direction, share) in forces {
                 let direction: [f64; 3] = direction;
                 let norm = direction.iter().map(|d| d * d).sum::<f64>().sqrt().max(1e-9);
                 for _ in 0..(pause / step) as usize {
-                    let speed = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+                    let air: [f64; 3] = [v[0] - wind[0], v[1] - wind[1], v[2]];
+                    let speed = air.iter().map(|v| v * v).sum::<f64>().sqrt();
                     for axis in 0..3 {
                         let weight = if axis == 2 { GRAVITY } else { 0.0 };
-                        let a = (THRUST * share * direction[axis] / norm - 0.5 * DRAG * speed * v[axis]) / MASS - weight;
+                        let a = (THRUST * share * direction[axis] / norm - 0.5 * DRAG * speed * air[axis]) / MASS - weight;
                         p[axis] += step * (v[axis] + 0.5 * step * a);
                         v[axis] += step * a;
                     }

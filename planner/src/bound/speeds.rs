@@ -1,4 +1,4 @@
-//! How fast a vehicle can possibly be on the way, for the bound in `agility.rs`.
+//! How fast a vehicle can possibly be through the air on the way, for the bound in `agility.rs`.
 //!
 //! With thrust over mass at most `f` and the drag `-k |v| v`, the horizontal and the vertical speed obey, in time,
 //!
@@ -78,7 +78,7 @@ impl Speeds {
         let step = horizon / ENTRIES as f64;
         // Thrust that also carries the weight, along the offset; slowing down, drag helps.
         let level = (thrust * thrust - GRAVITY * GRAVITY).max(0.0).sqrt();
-        let along = passage.offset.try_normalize(0.0).unwrap_or_default();
+        let along = passage.offset(horizon).try_normalize(0.0).unwrap_or_default();
         let [s_0, s_1] = passage.velocities.map(|v| v.dot(&along));
         let march = |first: f64, sign: f64| {
             let mut s = first;

@@ -110,6 +110,6 @@ impl Rounds<'_> {
     }
 
     fn leg(&self, [ax, ay]: [f64; 2], [bx, by]: [f64; 2], speed: f64) -> f64 {
-        self.model.time_over((ax - bx).hypot(ay - by), speed)
+        self.model.time_over([bx - ax, by - ay], speed)
     }
 }

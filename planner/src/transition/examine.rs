@@ -171,7 +171,8 @@ pub(crate) fn miss(model: Model, end: &Motion, goal: &Motion, free_yaw: bool) ->
     let attitude = match model {
         // Its attitude is a control and may jump.
         Model::PointMass => 0.0,
-        _ if free_yaw => end.tilt(),
+        _ if free_yaw && goal.tilt() == 0.0 => end.tilt(),
+        _ if free_yaw => up(end).angle(&up(goal)),
         // The shaping knows no yaw: the thrust axis is what the acceleration decides.
         Model::JerkLimited => up(end).angle(&up(goal)),
         Model::ThrustRate | Model::RigidBody => end.attitude.angle_to(&goal.attitude),

@@ -29,7 +29,8 @@ pub(crate) fn guess<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     if free_yaw {
         // Keep the nose where it is: only the tilt must go.
         let (_, _, yaw) = from.euler_angles();
-        to = UnitQuaternion::from_euler_angles(0.0, 0.0, yaw);
+        let turned = UnitQuaternion::from_euler_angles(0.0, 0.0, yaw);
+        to = if end.tilt() == 0.0 { turned } else { end.attitude * turned };
     }
     let position = |s: f64| {
         let point =

@@ -63,16 +63,22 @@ impl Pilot {
     pub(crate) fn new(mission: &Mission, orbits: &[Orbit]) -> Self {
         let settings = mission.transition.clone();
         let vehicle = &mission.fleet.vehicle;
+        let wind = mission.environment.air();
         let airframe = match settings.model {
-            Model::PointMass => Airframe::PointMass(PointMassFlight::new(vehicle, &settings)),
-            Model::JerkLimited => Airframe::JerkLimited(JerkLimitedFlight::new(vehicle, &settings)),
-            Model::ThrustRate => Airframe::ThrustRate(ThrustRateFlight::new(vehicle, &settings)),
-            Model::RigidBody => Airframe::RigidBody(RigidBodyFlight::new(vehicle, &settings, orbits)),
+            Model::PointMass => Airframe::PointMass(PointMassFlight::new(vehicle, &settings, wind)),
+            Model::JerkLimited => Airframe::JerkLimited(JerkLimitedFlight::new(vehicle, &settings, wind)),
+            Model::ThrustRate => Airframe::ThrustRate(ThrustRateFlight::new(vehicle, &settings, wind)),
+            Model::RigidBody => Airframe::RigidBody(RigidBodyFlight::new(vehicle, &settings, wind, orbits)),
         };
         let keep_outs = (0..mission.targets.len())
             .map(|i| KeepOut { centre: mission.targets[i].position, radius: mission.safe_distance(i) })
             .collect();
         Self { airframe, keep_outs, settings }
+    }
+
+    /// Whether [`Goal::Circle`] can be asked for: its attitude must be the same all the way round, if the model has one.
+    pub(crate) fn can_enter_anywhere(&self, orbit: &Orbit) -> bool {
+        orbit.loiter.is_even() || matches!(self.airframe, Airframe::PointMass(_) | Airframe::JerkLimited(_))
     }
 
     /// What a lower bound on the time of a transition may count on.
@@ -152,9 +158,10 @@ impl Pilot {
     }
 }
 
-/// The mission's vehicle hovering at `position` with its nose in a direction (rad, from east, counter-clockwise).
+/// The mission's vehicle hovering at `position` in its wind, its nose in a direction (rad, from east, counter-clockwise).
 pub(crate) fn hover(mission: &Mission, position: [f64; 3], heading: f64) -> Motion {
-    Motion::hover(&mission.fleet.vehicle, Vector3::from(position), heading)
+    let air = mission.environment.air();
+    Motion::hover_in_wind(&mission.fleet.vehicle, Vector3::from(position), heading, air)
 }
 
 impl Orbit {

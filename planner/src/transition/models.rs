@@ -5,9 +5,7 @@ use crate::bound::Agility;
 use crate::circles::Orbit;
 use crate::mission::{Model, TransitionSettings};
 use nalgebra::{RealField, SVector, Vector3};
-use quad_dynamics::{
-    Direction, Heading, JerkLimited, Motion, PointMass, RigidBody, ShapingLimits, ThrustRate, Vehicle,
-};
+use quad_dynamics::{Heading, JerkLimited, Motion, PointMass, RigidBody, ShapingLimits, ThrustRate, Vehicle};
 use traj_opt::{Dynamics, Hessian, Jacobian};
 
 /// Lets `traj-opt` see a model of `quad-dynamics`; the two crates do not know each other. The hessian takes of state,
@@ -63,16 +61,22 @@ macro_rules! dynamics {
 }
 
 /// The agility of a vehicle with thrust between two values (N) and a thrust axis that turns at most so fast (rad/s).
-fn agility(vehicle: &Vehicle, thrust: [f64; 2], turn_rate: f64) -> Agility {
+fn agility(vehicle: &Vehicle, thrust: [f64; 2], turn_rate: f64, wind: Vector3<f64>) -> Agility {
     let mass = vehicle.mass();
-    Agility { thrust: thrust.map(|f| f / mass), drag: vehicle.drag_coefficient() / (2.0 * mass), turn_rate }
+    let drag = vehicle.drag_coefficient() / (2.0 * mass);
+    Agility { thrust: thrust.map(|f| f / mass), drag, turn_rate, wind: wind.into() }
+}
+
+/// The thrust force (N, world) that holds a hover.
+fn hover_force(vehicle: &Vehicle, wind: Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(0.0, 0.0, vehicle.weight()) - vehicle.drag(&-wind)
 }
 
 /// Position and velocity under a bounded thrust vector.
 #[derive(Debug, Clone)]
 pub(crate) struct PointMassFlight {
     model: PointMass,
-    weight: f64,
+    hover: Vector3<f64>,
     max_thrust: f64,
     agility: Agility,
 }
@@ -80,10 +84,11 @@ pub(crate) struct PointMassFlight {
 dynamics!(PointMassFlight, 6, 3, |model, state, _control, weight| model.hessian(state, weight));
 
 impl PointMassFlight {
-    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
+    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings, wind: Vector3<f64>) -> Self {
         let max_thrust = settings.thrust_budget * vehicle.max_thrust();
-        let agility = agility(vehicle, [0.0, max_thrust], f64::INFINITY);
-        Self { model: PointMass::new(vehicle), weight: vehicle.weight(), max_thrust, agility }
+        let agility = agility(vehicle, [0.0, max_thrust], f64::INFINITY, wind);
+        let model = PointMass::new(vehicle).with_wind(wind);
+        Self { model, hover: hover_force(vehicle, wind), max_thrust, agility }
     }
 }
 
@@ -100,7 +105,7 @@ impl Flight<6, 3> for PointMassFlight {
     }
 
     fn hover_control(&self) -> SVector<f64, 3> {
-        SVector::from([0.0, 0.0, self.weight])
+        self.hover
     }
 
     fn control_bounds(&self) -> (SVector<f64, 3>, SVector<f64, 3>) {
@@ -130,8 +135,8 @@ pub(crate) struct JerkLimitedFlight {
 dynamics!(JerkLimitedFlight, 9, 3, |model, _state, _control, _weight| model.hessian());
 
 impl JerkLimitedFlight {
-    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
-        Self { model: JerkLimited::new(vehicle), shaping: settings.shaping }
+    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings, wind: Vector3<f64>) -> Self {
+        Self { model: JerkLimited::new(vehicle).with_wind(wind), shaping: settings.shaping }
     }
 }
 
@@ -185,7 +190,7 @@ impl Flight<9, 3> for JerkLimitedFlight {
 #[derive(Debug, Clone)]
 pub(crate) struct ThrustRateFlight {
     model: ThrustRate,
-    weight: f64,
+    hover_thrust: f64,
     thrust: [f64; 2],
     rates: Vector3<f64>,
     agility: Agility,
@@ -194,16 +199,16 @@ pub(crate) struct ThrustRateFlight {
 dynamics!(ThrustRateFlight, 10, 4, |model, state, control, weight| model.hessian(state, control, weight));
 
 impl ThrustRateFlight {
-    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings) -> Self {
+    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings, wind: Vector3<f64>) -> Self {
         let budget = settings.thrust_budget;
         let thrust = [vehicle.min_thrust(), budget * vehicle.max_thrust()];
         let rates = vehicle.max_body_rates() * budget;
         Self {
-            model: ThrustRate::new(vehicle),
-            weight: vehicle.weight(),
+            model: ThrustRate::new(vehicle).with_wind(wind),
+            hover_thrust: hover_force(vehicle, wind).norm(),
             thrust,
             rates,
-            agility: agility(vehicle, thrust, rates.xy().norm()),
+            agility: agility(vehicle, thrust, rates.xy().norm(), wind),
         }
     }
 }
@@ -221,7 +226,7 @@ impl Flight<10, 4> for ThrustRateFlight {
     }
 
     fn hover_control(&self) -> SVector<f64, 4> {
-        SVector::from([self.weight, 0.0, 0.0, 0.0])
+        SVector::from([self.hover_thrust, 0.0, 0.0, 0.0])
     }
 
     fn control_bounds(&self) -> (SVector<f64, 4>, SVector<f64, 4>) {
@@ -239,7 +244,7 @@ impl Flight<10, 4> for ThrustRateFlight {
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBodyFlight {
     model: RigidBody,
-    weight: f64,
+    hover_thrust: f64,
     rotor_thrust: [f64; 2],
     rates: Vector3<f64>,
     agility: Agility,
@@ -249,21 +254,25 @@ dynamics!(RigidBodyFlight, 13, 4, |model, state, control, weight| model.hessian(
 
 impl RigidBodyFlight {
     /// Body rates are states here: their budget is never below what the loiters at both ends of a transition have.
-    pub(crate) fn new(vehicle: &Vehicle, settings: &TransitionSettings, orbits: &[Orbit]) -> Self {
+    pub(crate) fn new(
+        vehicle: &Vehicle,
+        settings: &TransitionSettings,
+        wind: Vector3<f64>,
+        orbits: &[Orbit],
+    ) -> Self {
         let budget = settings.thrust_budget;
         let mut rates = vehicle.max_body_rates() * budget;
         for orbit in orbits {
             // The slack keeps an interior for the solver when the loiter is limited by the very rate.
-            let loiter = orbit.loiter.state(0.0, Direction::CounterClockwise).body_rates.abs() * (1.0 + 1e-6);
-            rates = rates.sup(&loiter);
+            rates = rates.sup(&(orbit.loiter.body_rates() * (1.0 + 1e-6)));
         }
         let rotor_thrust = [vehicle.min_rotor_thrust(), budget * vehicle.max_rotor_thrust()];
         Self {
-            model: RigidBody::new(vehicle),
-            weight: vehicle.weight(),
+            model: RigidBody::new(vehicle).with_wind(wind),
+            hover_thrust: hover_force(vehicle, wind).norm(),
             rotor_thrust,
             rates,
-            agility: agility(vehicle, rotor_thrust.map(|rotor| 4.0 * rotor), rates.xy().norm()),
+            agility: agility(vehicle, rotor_thrust.map(|rotor| 4.0 * rotor), rates.xy().norm(), wind),
         }
     }
 }
@@ -281,7 +290,7 @@ impl Flight<13, 4> for RigidBodyFlight {
     }
 
     fn hover_control(&self) -> SVector<f64, 4> {
-        SVector::repeat(0.25 * self.weight)
+        SVector::repeat(0.25 * self.hover_thrust)
     }
 
     fn control_bounds(&self) -> (SVector<f64, 4>, SVector<f64, 4>) {

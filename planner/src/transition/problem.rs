@@ -101,7 +101,9 @@ impl<const NX: usize, const NU: usize, F: Flight<NX, NU>> Problem<NX, NU> for Mi
             Goal::Motion(goal) | Goal::Hover(goal) => {
                 let state = self.flight.state(&goal);
                 (0..NX).filter(|i| !free.contains(i)).for_each(|i| fix(i, state[i]));
-                if let (Goal::Hover(_), Some(first)) = (self.goal, F::ATTITUDE) {
+                if let (Goal::Hover(_), Some(first)) = (self.goal, F::ATTITUDE)
+                    && goal.tilt() == 0.0
+                {
                     // Level: the body's z axis is vertical exactly when the quaternion's x and y vanish.
                     fix(first + 1, 0.0);
                     fix(first + 2, 0.0);
@@ -185,6 +187,8 @@ impl<const NX: usize, const NU: usize, F: Flight<NX, NU>> Problem<NX, NU> for Mi
     fn n_boundary(&self) -> usize {
         match self.goal {
             Goal::Motion(_) if F::ATTITUDE.is_some() => 3,
+            // In wind a hover leans; what is left to the yaw is a turn about the thrust.
+            Goal::Hover(goal) if F::ATTITUDE.is_some() && goal.tilt() > 0.0 => 2,
             Goal::Motion(_) | Goal::Hover(_) => 0,
             Goal::Circle(..) if F::ATTITUDE.is_some() || NX >= 9 => 7,
             Goal::Circle(..) => 4,
@@ -202,9 +206,10 @@ impl<const NX: usize, const NU: usize, F: Flight<NX, NU>> Problem<NX, NU> for Mi
             (Goal::Circle(orbit, direction), attitude) => {
                 circle_error(orbit, direction, attitude, end, values)
             }
-            (Goal::Motion(goal), Some(first)) => {
+            (Goal::Motion(goal) | Goal::Hover(goal), Some(first)) => {
                 let q = [end[first], end[first + 1], end[first + 2], end[first + 3]];
-                values.copy_from_slice(&attitude_error(&to_wxyz(&goal.attitude).map(real).into(), &q));
+                let error = attitude_error(&to_wxyz(&goal.attitude).map(real).into(), &q);
+                values.copy_from_slice(&error[..values.len()]);
             }
             _ => {}
         }
