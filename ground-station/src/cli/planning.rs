@@ -122,7 +122,7 @@ pub struct SimulateArguments {
     /// The folder into which the files go.
     #[arg(long, value_name = "DIR", default_value = "simulated")]
     pub out: PathBuf,
-    /// Steady wind towards east and north (m/s): EAST,NORTH.
+    /// Steady wind on top of the one that the mission is planned for, towards east and north (m/s): EAST,NORTH.
     #[arg(long, value_name = "E,N", default_value = "0,0", value_parser = parse_wind, allow_hyphen_values = true)]
     pub wind: [f64; 2],
     /// Gusts as in a wind of this speed at 20 ft (m/s).

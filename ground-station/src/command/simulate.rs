@@ -20,7 +20,7 @@ pub struct SimulateRequest {
     pub file: Option<PathBuf>,
     /// The folder into which the files go.
     pub out: PathBuf,
-    /// Steady wind: east, north (m/s).
+    /// Steady wind on top of the one that the mission is planned for: east, north (m/s).
     pub wind: [f64; 2],
     /// Wind speed at 20 ft that sets the strength of the gusts (m/s); 0 for none.
     pub gusts: f64,
@@ -61,7 +61,8 @@ pub fn simulate(request: &SimulateRequest) -> Result<String, Failure> {
 }
 
 fn options(request: &SimulateRequest, file: &MissionFile) -> SimulationOptions {
-    let [east, north] = request.wind;
+    let planned = file.mission.environment.wind;
+    let [east, north] = [0, 1].map(|axis| planned[axis] + request.wind[axis]);
     let mut options = SimulationOptions::default().with_wind(Vector3::new(east, north, 0.0));
     if request.gusts > 0.0 {
         options = options.with_gusts(request.gusts, file.mission.loiter.height);

@@ -138,6 +138,7 @@ fn read_root(
     mission.name = name;
     mission.merge_within = merge_within;
     mission.depot = settings::depot(root, frame).unwrap_or(mission.depot);
+    mission.environment = settings::environment(root);
     mission.loiter = settings::loiter(root);
     mission.transition = settings::transition(root);
     mission.objective = root.choice("objective", &words::OBJECTIVES).unwrap_or(mission.objective);

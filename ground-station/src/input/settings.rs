@@ -5,7 +5,7 @@ use super::reader::{Reader, Section};
 use super::targets::{Frame, position};
 use super::vehicle;
 use crate::words::{MODELS, TRANSCRIPTIONS};
-use planner::{Entries, Fleet, LoiterSettings, LoiterYaw, ShapingLimits, TransitionSettings};
+use planner::{Entries, Environment, Fleet, LoiterSettings, LoiterYaw, ShapingLimits, TransitionSettings};
 
 /// Words for [`LoiterYaw`].
 const YAWS: [(&str, LoiterYaw); 2] =
@@ -40,6 +40,18 @@ pub fn fleet(root: &Section<'_, '_>, reader: &Reader<'_>) -> Option<Fleet> {
     });
     section.finish();
     fleet
+}
+
+/// `[environment]`: the steady wind that is planned for.
+pub fn environment(root: &Section<'_, '_>) -> Environment {
+    // A hurricane; what the vehicle can fly in is the planner's business.
+    const WINDS: Range = Range::between(-100.0, 100.0);
+    let section = root.section("environment");
+    let wind = section.item("wind").and_then(|item| item.numbers::<2>(WINDS));
+    section.finish();
+    let mut environment = Environment::default();
+    environment.wind = wind.unwrap_or(environment.wind);
+    environment
 }
 
 /// `[loiter]`; angles in degrees.
