@@ -71,20 +71,24 @@ pub enum Error {
         target: usize,
     },
     /// A target is beyond the reach of every vehicle that may serve it.
-    #[error("target {target} needs a limit of at least {needed} even on a route of its own")]
+    #[error("target {target} needs a limit of at least {needed} even on a route of its own; {remedy}")]
     TargetOutOfReach {
         /// The target.
         target: usize,
         /// The least length of a route that serves it alone, over the vehicles allowed.
         needed: f64,
+        /// What would suffice.
+        remedy: Remedy,
     },
     /// The limits together are below what all routes together must cost.
-    #[error("the limits sum to {available}, but all routes together cost at least {needed}")]
+    #[error("the limits sum to {available}, but all routes together cost at least {needed}; {remedy}")]
     LimitsTooSmall {
         /// A certified lower bound on the total cost.
         needed: f64,
         /// The sum of the limits.
         available: f64,
+        /// What would suffice.
+        remedy: Remedy,
     },
     /// A label names no vehicle.
     #[error("target {target} has label {label}, but there are {vehicles} vehicles")]
@@ -143,10 +147,12 @@ pub enum Error {
     #[error("this needs interchangeable vehicles: the same start, end and limit, and no forbidden pairs")]
     VehiclesDiffer,
     /// The search found no routes within the limits; there may be some all the same.
-    #[error("no routes within the limits were found; limits longer by {excess} each would suffice")]
+    #[error("no routes within the limits were found, the best exceed them by {excess}; {remedy}")]
     LimitsNotMet {
         /// The greatest excess of a route over its limit in the best routes found: limits raised by this are met.
         excess: f64,
+        /// What would suffice.
+        remedy: Remedy,
     },
     /// A position is NaN or infinite.
     #[error("coordinate {axis} of the position is not finite")]
@@ -172,6 +178,24 @@ pub enum Error {
     /// Targets could not be clustered.
     #[error("the targets could not be clustered")]
     Clusters(#[from] cluster::Error),
+}
+
+/// What would make limits sufficient: known from routes that were found, so neither number need be the least.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Remedy {
+    /// There are routes if every vehicle has at least this limit.
+    pub limit: f64,
+    /// There are routes for this many vehicles with the limit that they have; none for vehicles that differ, or if a target is out of their
+    /// reach. [`least_fleet`](crate::least_fleet) looks for the fewest.
+    pub vehicles: Option<usize>,
+}
+
+impl std::fmt::Display for Remedy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "limits of {} would suffice", self.limit)?;
+        self.vehicles.map_or(Ok(()), |vehicles| write!(f, ", or {vehicles} vehicles"))
+    }
 }
 
 /// The lists of [`Error::WrongLength`].

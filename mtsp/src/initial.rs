@@ -14,7 +14,18 @@ pub(crate) fn routes<M: Metric>(
     seed: u64,
 ) -> Result<Option<Vec<Vec<usize>>>, Error> {
     let mut best: Option<(f64, Vec<Vec<usize>>)> = None;
-    for candidate in [clustered(problem, seed), toured(problem, objective)] {
+    let mut candidates = vec![clustered(problem, seed)];
+    match tour_order(problem) {
+        Ok(order) => {
+            candidates.push(split(problem, &order, objective).map(Some));
+            // The flattest cuts keep a limit if any do.
+            if objective == Objective::Total && problem.has_limits() {
+                candidates.push(split(problem, &order, Objective::Makespan).map(Some));
+            }
+        }
+        Err(error) => candidates.push(Err(error)),
+    }
+    for candidate in candidates {
         let routes = match candidate {
             Ok(Some(routes)) => routes,
             // An asymmetric distance is for the search, which needs no tour.
@@ -41,11 +52,8 @@ fn clustered<M: Metric>(problem: &Problem<'_, M>, seed: u64) -> Result<Option<Ve
     }
 }
 
-/// An improved Christofides tour from the first vehicle's start, split.
-fn toured<M: Metric>(
-    problem: &Problem<'_, M>,
-    objective: Objective,
-) -> Result<Option<Vec<Vec<usize>>>, Error> {
+/// The targets in the order of an improved Christofides tour from the first vehicle's start.
+pub(crate) fn tour_order<M: Metric>(problem: &Problem<'_, M>) -> Result<Vec<usize>, Error> {
     let mut nodes = vec![problem.start(0)];
     nodes.extend(problem.targets());
     let mut order =
@@ -58,6 +66,5 @@ fn toured<M: Metric>(
         };
     let depot = order.iter().position(|&v| v == 0).unwrap_or(0);
     order.rotate_left(depot);
-    let order: Vec<usize> = order[1..].iter().map(|&v| nodes[v]).collect();
-    split(problem, &order, objective).map(Some)
+    Ok(order[1..].iter().map(|&v| nodes[v]).collect())
 }

@@ -57,7 +57,7 @@ pub fn least_fleet<M: Metric>(problem: &Problem<'_, M>, options: &Options) -> Re
         return Err(Error::VehiclesDiffer);
     }
     let mut routes = within_limit(problem, options)?;
-    let mut at_least = usize::from(!routes.is_empty());
+    let mut at_least = proven(problem, routes.len());
     // No search with fewer than this has succeeded: proven up to `at_least`, believed from there.
     let mut low = at_least;
     while low < routes.len() {
@@ -75,7 +75,6 @@ pub fn least_fleet<M: Metric>(problem: &Problem<'_, M>, options: &Options) -> Re
         }
     }
     let vehicles = routes.len();
-    at_least = at_least.max(proven(problem, vehicles));
     if vehicles > 0 {
         routes = solve_from(&problem.with_first_vehicles(vehicles), routes, options, &mut |_| true)?.routes;
     }
@@ -92,8 +91,8 @@ fn within_limit<M: Metric>(problem: &Problem<'_, M>, options: &Options) -> Resul
     Ok(found.routes.into_iter().filter(|route| !route.is_empty()).collect())
 }
 
-/// A number of vehicles, at most `vehicles`, below which the total cost does not fit the limits.
+/// A number of vehicles, at most `vehicles`, below which the total cost does not fit the limits; at least one for any target.
 fn proven<M: Metric>(problem: &Problem<'_, M>, vehicles: usize) -> usize {
     let (total, limit) = (lower_bound::both(problem).total_cost, problem.limit(0));
-    (0..vehicles).find(|&k| total <= k as f64 * limit).unwrap_or(vehicles)
+    (1.min(vehicles)..vehicles).find(|&k| total <= k as f64 * limit).unwrap_or(vehicles)
 }

@@ -12,11 +12,11 @@
 //! | wanted | function |
 //! |---|---|
 //! | good routes | [`solve`], [`solve_with`] (progress, stop), [`solve_from`] (from given routes) |
-//! | the fewest vehicles under a limit | [`least_fleet`] |
+//! | the fewest vehicles under a limit | [`least_fleet`]; [`Remedy`]: what would suffice where limits cannot be kept |
 //! | routes from a clustering | [`assign`] |
 //! | routes from a tour | [`split`], [`k_splitour`] (with a proven factor) |
 //! | how good they can be | [`lower_bound`], [`Solution::gap`] |
-//! | targets that change under way | [`Fleet`]; [`procedure_1`], [`procedure_2`] (rounds, as in the paper) |
+//! | targets that change under way, in the plane or over any metric | [`Fleet`], [`Space`]; [`procedure_1`], [`procedure_2`] (rounds, as in the paper) |
 //! | whether routes are valid | [`check`](check()) |
 //!
 //! # Example
@@ -53,6 +53,7 @@
 mod check;
 mod cluster_first;
 mod error;
+mod feasibility;
 mod fleet;
 mod improve;
 mod initial;
@@ -66,8 +67,8 @@ mod split;
 
 pub use check::{LIMIT_TOLERANCE, Measured, check};
 pub use cluster_first::assign;
-pub use error::{Error, List};
-pub use fleet::{Absorb, Fleet, Revisit, TargetId, VehicleId};
+pub use error::{Error, List, Remedy};
+pub use fleet::{Absorb, Euclidean, Fleet, Nodes, Revisit, Space, TargetId, VehicleId};
 pub use improve::{Options, Progress, solve, solve_from, solve_with};
 pub use least_fleet::{LeastFleet, least_fleet};
 pub use lower_bound::LowerBounds;

@@ -41,6 +41,24 @@ pub fn split<M: Metric>(
     Ok(routes)
 }
 
+/// How many interchangeable vehicles can take an order one after the other, each as much as its limit allows; none if a target is out of reach.
+pub(crate) fn fewest_routes<M: Metric>(problem: &Problem<'_, M>, order: &[usize]) -> Option<usize> {
+    let along = Along::new(problem, order);
+    let limit = problem.limit(0);
+    let (mut vehicles, mut i) = (0, 0);
+    while i < order.len() {
+        let mut j = i;
+        while j < order.len() && along.length(0, i, j + 1) <= limit {
+            j += 1;
+        }
+        if j == i {
+            return None;
+        }
+        (vehicles, i) = (vehicles + 1, j);
+    }
+    Some(vehicles)
+}
+
 /// Prefix sums along an order, so that the route through `i..j` is measured in constant time.
 struct Along<'a, M: Metric> {
     problem: &'a Problem<'a, M>,

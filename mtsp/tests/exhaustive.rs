@@ -208,14 +208,38 @@ proptest! {
             }
             Err(error) => {
                 prop_assert!(best == f64::INFINITY);
-                let named = matches!(
-                    error,
-                    Error::TargetOutOfReach { .. } | Error::LimitsTooSmall { .. } | Error::LimitsNotMet { .. }
-                );
-                prop_assert!(named);
+                let (remedy, reached) = match error {
+                    Error::TargetOutOfReach { remedy, .. } => (remedy, false),
+                    Error::LimitsTooSmall { remedy, .. } | Error::LimitsNotMet { remedy, .. } => (remedy, true),
+                    other => return Err(TestCaseError::fail(other.to_string())),
+                };
+                let with = |vehicles: usize, limit: f64| {
+                    let limits = vec![limit * (1.0 + 1e-9); vehicles];
+                    optimum(&Problem::new(&metric, vehicles).unwrap().with_limits(limits).unwrap(), Objective::Makespan)
+                };
+                prop_assert!(with(instance.vehicles, remedy.limit) <= remedy.limit * (1.0 + 1e-9));
+                prop_assert_eq!(remedy.vehicles.is_some(), reached);
+                if let Some(vehicles) = remedy.vehicles {
+                    prop_assert!(vehicles > instance.vehicles && with(vehicles, limit).is_finite());
+                }
             }
         }
     }
+}
+
+#[test]
+fn a_refusal_says_what_would_suffice() {
+    let nodes = [[0.0, 0.0], [10.0, 0.0], [-10.0, 0.0], [0.0, 10.0]];
+    let metric = christofides::Points(&nodes);
+    let with_limit =
+        |m: usize, limit: f64| Problem::new(&metric, m).unwrap().with_limits(vec![limit; m]).unwrap();
+    let refusal = |problem: &Problem<'_, _>| solve(problem, &Options::default()).unwrap_err().to_string();
+    assert_eq!(
+        refusal(&with_limit(3, 19.0)),
+        "target 1 needs a limit of at least 20 even on a route of its own; limits of 20 would suffice"
+    );
+    let two = refusal(&with_limit(2, 20.0));
+    assert!(two.ends_with("limits of 34.14213562373095 would suffice, or 3 vehicles"), "{two}");
 }
 
 #[test]

@@ -1,7 +1,17 @@
 //! Random events: no waiting target is lost, none is visited again that must not be.
 
-use mtsp::{Absorb, Error, Fleet, Revisit, TargetId, VehicleId, procedure_1, procedure_2};
+use christofides::Points;
+use mtsp::{
+    Absorb, Error, Euclidean, Fleet, Nodes, Revisit, Space, TargetId, VehicleId, procedure_1, procedure_2,
+};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Places are on a coarse grid, so that targets coincide now and then.
+const SIDE: u64 = 60;
+
+fn on_grid(node: usize) -> [f64; 2] {
+    [(node as u64 / SIDE) as f64, (node as u64 % SIDE) as f64]
+}
 
 /// A small generator of its own (SplitMix64): the events must not change with a library's.
 struct Random(u64);
@@ -15,9 +25,13 @@ impl Random {
         (z ^ (z >> 31)) % bound
     }
 
+    /// A node of the grid.
+    fn node(&mut self) -> usize {
+        self.next(SIDE * SIDE) as usize
+    }
+
     fn place(&mut self) -> [f64; 2] {
-        // A coarse grid, so that targets coincide now and then.
-        [self.next(60) as f64, self.next(60) as f64]
+        on_grid(self.node())
     }
 
     fn pick<T: Copy>(&mut self, from: &[T]) -> Option<T> {
@@ -28,7 +42,7 @@ impl Random {
 /// What the fleet should know, kept apart from it: targets with the number of visits.
 type Books = BTreeMap<TargetId, usize>;
 
-fn audit(fleet: &Fleet, books: &Books, revisit: Revisit) {
+fn audit<S: Space>(fleet: &Fleet<S>, books: &Books, revisit: Revisit) {
     let mut owned: BTreeSet<TargetId> = fleet.unassigned().iter().copied().collect();
     let mut count = owned.len();
     for vehicle in fleet.vehicles() {
@@ -47,16 +61,24 @@ fn audit(fleet: &Fleet, books: &Books, revisit: Revisit) {
     }
 }
 
-fn run(revisit: Revisit, absorb: Absorb, seed: u64, events: usize) {
+/// Random events; returns who visited what, in order.
+fn run<S: Space>(
+    space: S,
+    place: impl Fn(usize) -> S::Place,
+    (revisit, absorb): (Revisit, Absorb),
+    seed: u64,
+    events: usize,
+) -> Vec<(VehicleId, TargetId)> {
     let mut random = Random(seed);
-    let mut fleet = Fleet::new(revisit, absorb);
+    let mut visits = vec![];
+    let mut fleet = Fleet::over(space, revisit, absorb);
     let mut books = Books::new();
     let mut vehicles: Vec<VehicleId> = vec![];
     for event in 0..events {
         let targets: Vec<TargetId> = books.keys().copied().collect();
         match random.next(100) {
             0..22 if targets.len() < 60 => {
-                books.insert(fleet.appear(random.place()).unwrap(), 0);
+                books.insert(fleet.appear(place(random.node())).unwrap(), 0);
             }
             22..30 => {
                 if let Some(target) = random.pick(&targets) {
@@ -67,10 +89,10 @@ fn run(revisit: Revisit, absorb: Absorb, seed: u64, events: usize) {
             }
             30..38 => {
                 if let Some(target) = random.pick(&targets) {
-                    fleet.shift(target, random.place()).unwrap();
+                    fleet.shift(target, place(random.node())).unwrap();
                 }
             }
-            38..40 if vehicles.len() < 6 => vehicles.push(fleet.join(random.place()).unwrap()),
+            38..40 if vehicles.len() < 6 => vehicles.push(fleet.join(place(random.node())).unwrap()),
             40..41 => {
                 if let Some(vehicle) = random.pick(&vehicles) {
                     fleet.drop_out(vehicle).unwrap();
@@ -86,6 +108,7 @@ fn run(revisit: Revisit, absorb: Absorb, seed: u64, events: usize) {
                 if let Some(vehicle) = random.pick(&vehicles)
                     && let Some(target) = fleet.visit_next(vehicle).unwrap()
                 {
+                    visits.push((vehicle, target));
                     *books.get_mut(&target).expect("visited a target that is gone") += 1;
                 }
             }
@@ -96,7 +119,7 @@ fn run(revisit: Revisit, absorb: Absorb, seed: u64, events: usize) {
     }
     // Nothing that waits is lost: one more round visits every target that has a vehicle.
     if vehicles.is_empty() {
-        vehicles.push(fleet.join([0.0, 0.0]).unwrap());
+        vehicles.push(fleet.join(place(0)).unwrap());
     }
     let mut seen = BTreeSet::new();
     for &vehicle in &vehicles {
@@ -109,21 +132,37 @@ fn run(revisit: Revisit, absorb: Absorb, seed: u64, events: usize) {
     for (target, visits) in books {
         assert!(seen.contains(&target) || (revisit == Revisit::NewOnly && visits > 0), "waits for ever");
     }
+    visits
 }
+
+const POLICIES: [(Revisit, Absorb); 4] = [
+    (Revisit::All, Absorb::NearestCluster),
+    (Revisit::NewOnly, Absorb::NearestCluster),
+    (Revisit::All, Absorb::CheapestInsertion),
+    (Revisit::NewOnly, Absorb::CheapestInsertion),
+];
 
 #[test]
 fn a_hundred_thousand_events() {
-    for (revisit, absorb) in [
-        (Revisit::All, Absorb::NearestCluster),
-        (Revisit::NewOnly, Absorb::NearestCluster),
-        (Revisit::All, Absorb::CheapestInsertion),
-        (Revisit::NewOnly, Absorb::CheapestInsertion),
-    ] {
-        run(revisit, absorb, 1, 100_000);
+    for policy in POLICIES {
+        run(Euclidean, on_grid, policy, 1, 100_000);
         for seed in 2..12 {
-            run(revisit, absorb, seed, 500);
+            run(Euclidean, on_grid, policy, seed, 500);
         }
     }
+}
+
+#[test]
+fn a_metric_without_coordinates_serves_as_well() {
+    let nodes: Vec<[f64; 2]> = (0..(SIDE * SIDE) as usize).map(on_grid).collect();
+    for policy in POLICIES {
+        let visits = run(Nodes(Points(&nodes)), |node| node, policy, 1, 10_000);
+        if policy.1 == Absorb::CheapestInsertion {
+            assert_eq!(visits, run(Euclidean, on_grid, policy, 1, 10_000));
+        }
+    }
+    let mut fleet = Fleet::over(Nodes(Points(&nodes)), Revisit::All, Absorb::NearestCluster);
+    assert!(matches!(fleet.join(nodes.len()), Err(Error::UnknownNode { .. })));
 }
 
 #[test]

@@ -15,8 +15,9 @@ pub use options::Options;
 
 use crate::check::check;
 use crate::error::Error;
+use crate::feasibility::{feasible_bounds, remedy};
 use crate::initial;
-use crate::lower_bound::{self, LowerBounds};
+use crate::lower_bound::LowerBounds;
 use crate::objective::Objective;
 use crate::problem::Problem;
 use crate::solution::Solution;
@@ -77,7 +78,7 @@ pub fn solve_with<M: Metric>(
     proceed: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Solution, Error> {
     check_distances(problem)?;
-    let bounds = feasible_bounds(problem)?;
+    let bounds = feasible_bounds(problem, options)?;
     let start = initial::routes(problem, options.objective, options.seed)?;
     run(problem, start, bounds, options, proceed)
 }
@@ -94,7 +95,7 @@ pub fn solve_from<M: Metric>(
 ) -> Result<Solution, Error> {
     check_distances(problem)?;
     check(problem, &routes)?;
-    let bounds = feasible_bounds(problem)?;
+    let bounds = feasible_bounds(problem, options)?;
     run(problem, Some(routes), bounds, options, proceed)
 }
 
@@ -112,26 +113,6 @@ fn check_distances<M: Metric>(problem: &Problem<'_, M>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Lower bounds, refused where they show that the limits cannot be met.
-fn feasible_bounds<M: Metric>(problem: &Problem<'_, M>) -> Result<LowerBounds, Error> {
-    if problem.has_limits() {
-        for &target in problem.targets() {
-            let alone = |v: usize| problem.route_length(v, &[target]);
-            let allowed = || (0..problem.vehicles()).filter(|&v| problem.allows(v, target));
-            if !allowed().any(|v| alone(v) <= problem.limit(v)) {
-                let needed = allowed().map(alone).fold(f64::INFINITY, f64::min);
-                return Err(Error::TargetOutOfReach { target, needed });
-            }
-        }
-    }
-    let bounds = lower_bound::both(problem);
-    let available: f64 = (0..problem.vehicles()).map(|v| problem.limit(v)).sum();
-    if bounds.total_cost > available {
-        return Err(Error::LimitsTooSmall { needed: bounds.total_cost, available });
-    }
-    Ok(bounds)
-}
-
 fn run<M: Metric>(
     problem: &Problem<'_, M>,
     start: Option<Vec<Vec<usize>>>,
@@ -147,15 +128,14 @@ fn run<M: Metric>(
     } else {
         improve(problem, &Computed::new(problem), start, bounds, options, proceed)
     };
-    let excess = routes
-        .iter()
-        .enumerate()
-        .map(|(v, route)| problem.route_length(v, route) - problem.limit(v))
-        .fold(f64::NEG_INFINITY, f64::max);
-    match Solution::with_bounds(problem, routes, bounds) {
-        Err(Error::LimitExceeded { .. }) => Err(Error::LimitsNotMet { excess }),
-        other => other,
+    if let Ok(solution) = Solution::with_bounds(problem, routes.clone(), bounds) {
+        return Ok(solution);
     }
+    // Only a limit can have been missed; what the routes measure without limits says by how much.
+    let measured = check(&problem.without_restrictions(), &routes)?;
+    let excesses = measured.lengths.iter().enumerate().map(|(v, length)| length - problem.limit(v));
+    let excess = excesses.fold(f64::NEG_INFINITY, f64::max);
+    Err(Error::LimitsNotMet { excess, remedy: remedy(problem, measured.makespan) })
 }
 
 fn improve<M: Metric>(
