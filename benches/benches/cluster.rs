@@ -1,8 +1,8 @@
 //! k-means, complete linkage and merging on uniform points.
 #![allow(missing_docs)]
 
-use cluster::{KMeansOptions, Linkage, kmeans, linkage, merge_within};
-use criterion::{Criterion, criterion_group, criterion_main};
+use cluster::{KMeansOptions, Linkage, kmeans, linkage, linkage_condensed, merge_within};
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
 /// Uniform points in the unit square from a multiplicative generator.
@@ -31,6 +31,25 @@ fn bench(c: &mut Criterion) {
     let middle = points(2000);
     group.bench_function("linkage/complete/n2000", |b| {
         b.iter(|| linkage(black_box(&middle), Linkage::Complete))
+    });
+    let mut condensed = Vec::new();
+    for i in 0..middle.len() {
+        condensed.extend(middle[i + 1..].iter().map(|q| (middle[i][0] - q[0]).hypot(middle[i][1] - q[1])));
+    }
+    // Both overwrite the matrix, so both get a copy; the peer is the crate that the workspace builds on.
+    group.bench_function("linkage_condensed/complete/n2000", |b| {
+        b.iter_batched_ref(
+            || condensed.clone(),
+            |d| linkage_condensed(d, middle.len(), Linkage::Complete),
+            BatchSize::LargeInput,
+        );
+    });
+    group.bench_function("kodama/complete/n2000", |b| {
+        b.iter_batched_ref(
+            || condensed.clone(),
+            |d| kodama::linkage(d, middle.len(), kodama::Method::Complete),
+            BatchSize::LargeInput,
+        );
     });
     group.finish();
 }

@@ -1,6 +1,6 @@
 //! Time and result of a clustering of the points of a file, for comparison with other programs.
 //!
-//! `measure FILE.csv kmeans K RESTARTS RUNS` prints the inertia and the least seconds of some runs, which differ in nothing;
+//! `measure FILE.csv kmeans K RESTARTS SEED RUNS` prints the inertia and the least seconds of some runs, which differ in nothing;
 //! `measure FILE.csv complete RUNS` the sum of all merge heights and the least seconds. Two numbers a line, nothing else in the file.
 
 use cluster::{KMeansOptions, Linkage, kmeans, linkage};
@@ -18,8 +18,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     match given.get(1).map(String::as_str) {
         Some("kmeans") => {
-            let (k, options) = (number(2)?, KMeansOptions::default().with_n_init(number(3)?));
-            report(number(4)?, || Ok(kmeans(&points, k, &options)?.inertia))
+            let options = KMeansOptions::default().with_n_init(number(3)?).with_seed(number(4)? as u64);
+            let k = number(2)?;
+            report(number(5)?, || Ok(kmeans(&points, k, &options)?.inertia))
         }
         Some("complete") => report(number(2)?, || {
             Ok(linkage(&points, Linkage::Complete)?.steps().iter().map(|step| step.dissimilarity).sum())

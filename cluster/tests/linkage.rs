@@ -84,6 +84,28 @@ proptest! {
     }
 
     #[test]
+    fn steps_are_those_of_kodama(points in scattered(60)) {
+        let mut condensed = vec![];
+        for i in 0..points.len() {
+            condensed.extend(points[i + 1..].iter().map(|q| distance(&points[i], q)));
+        }
+        for (method, same) in [
+            (Linkage::Single, kodama::Method::Single),
+            (Linkage::Complete, kodama::Method::Complete),
+            (Linkage::Average, kodama::Method::Average),
+            (Linkage::Ward, kodama::Method::Ward),
+        ] {
+            let ours = linkage_condensed(&mut condensed.clone(), points.len(), method).unwrap();
+            let theirs = kodama::linkage(&mut condensed.clone(), points.len(), same);
+            prop_assert_eq!(ours.steps().len(), theirs.steps().len());
+            for (a, b) in ours.steps().iter().zip(theirs.steps()) {
+                prop_assert_eq!((a.cluster1, a.cluster2, a.size), (b.cluster1, b.cluster2, b.size));
+                prop_assert_eq!(a.dissimilarity, b.dissimilarity);
+            }
+        }
+    }
+
+    #[test]
     fn merging_within_is_the_complete_linkage_cut(points in scattered(120), diameter in 0.0..1.5f64) {
         let merged = merge_within(&points, diameter).unwrap();
         let full = linkage(&points, Linkage::Complete).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, OptionName};
 
-/// How [`kmeans`](crate::kmeans) works; the defaults are those of scikit-learn 1.x with ten restarts.
+/// How [`kmeans`](crate::kmeans) works; the defaults are those of scikit-learn 1.x with ten restarts, but for the tolerance.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct KMeansOptions {
@@ -13,13 +13,14 @@ pub struct KMeansOptions {
     /// Greatest number of Lloyd iterations a run (default 300).
     pub max_iterations: usize,
     /// A run has converged when the squared shifts of the centroids sum to no more than this times the mean variance of
-    /// the coordinates (default 1e-4); 0 runs to a fixed point.
+    /// the coordinates; 0 runs to a fixed point. Default 1e-6: scikit-learn's 1e-4 leaves up to 0.5 % of the inertia on the table (100 000
+    /// uniform points), and iterations are cheap here.
     pub tolerance: f64,
 }
 
 impl Default for KMeansOptions {
     fn default() -> Self {
-        Self { seed: 0, n_init: 10, max_iterations: 300, tolerance: 1e-4 }
+        Self { seed: 0, n_init: 10, max_iterations: 300, tolerance: 1e-6 }
     }
 }
 
