@@ -43,7 +43,7 @@
 //! `serde`: serialisation of the results.
 //!
 //! # References
-//! Lloyd 1982; Arthur and Vassilvitskii 2007; Pelleg and Moore 1999; Kanungo et al. 2002; Müllner 2011; Defays 1977;
+//! Lloyd 1982; Hartigan 1975; Arthur and Vassilvitskii 2007; Pelleg and Moore 1999; Kanungo et al. 2002; Müllner 2011; Defays 1977;
 //! Welzl 1991; Gärtner 1999. Each function names its own.
 
 #![forbid(unsafe_code)]

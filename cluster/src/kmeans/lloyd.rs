@@ -1,5 +1,6 @@
-//! Lloyd's iteration from given seeds, with repair of empty clusters.
+//! Lloyd's iteration from given seeds, with repair of empty clusters, and exchanges of single points where it rests.
 
+use super::exchange::exchange;
 use super::filter::{Moments, assign};
 use super::{KMeansOptions, KMeansStatus};
 use crate::geometry::squared_distance;
@@ -25,22 +26,37 @@ impl<const D: usize> Default for Run<D> {
 pub(super) fn run<const D: usize>(tree: &Tree<D>, seeds: Vec<[f64; D]>, options: &KMeansOptions) -> Run<D> {
     let mut run = Run { centroids: seeds, ..Run::default() };
     let mut moments = Moments::default();
+    iterate(tree, &mut run, &mut moments, options);
+    run.inertia = assign(tree, &run.centroids, &mut run.labels);
+    if run.status == KMeansStatus::Converged && exchange(tree, &mut run) {
+        // At a fixed point of this iteration, unless rounding or the limit of passes says otherwise.
+        iterate(tree, &mut run, &mut moments, options);
+        run.inertia = assign(tree, &run.centroids, &mut run.labels);
+    }
+    settle(tree, &mut run);
+    run
+}
+
+/// Lloyd's iteration until the centroids rest or the limit is reached.
+fn iterate<const D: usize>(
+    tree: &Tree<D>,
+    run: &mut Run<D>,
+    moments: &mut Moments<D>,
+    options: &KMeansOptions,
+) {
     let tolerance = options.tolerance * tree.mean_variance;
     run.status = KMeansStatus::IterationLimit;
     while run.iterations < options.max_iterations {
         run.iterations += 1;
         moments.collect(tree, &run.centroids);
-        let shift = move_centroids(&mut run.centroids, &moments);
+        let shift = move_centroids(&mut run.centroids, moments);
         if moments.weights.contains(&0.0) {
-            repair(tree, &mut run, &moments.weights);
+            repair(tree, run, &moments.weights);
         } else if shift <= tolerance {
             run.status = KMeansStatus::Converged;
-            break;
+            return;
         }
     }
-    run.inertia = assign(tree, &run.centroids, &mut run.labels);
-    settle(tree, &mut run);
-    run
 }
 
 /// Moves each centroid to the mean of its points; returns the sum of squared shifts.

@@ -1,5 +1,6 @@
 //! Lloyd's k-means with greedy k-means++ seeding and exact filtering by a k-d tree.
 
+mod exchange;
 mod filter;
 mod lloyd;
 mod options;
@@ -72,6 +73,7 @@ pub enum KMeansStatus {
 /// Vassilvitskii 2007), the best of [`n_init`](KMeansOptions::n_init) runs. The nearest centroids are found exactly by
 /// filtering candidates through a k-d tree (Pelleg and Moore 1999, doi:10.1145/312129.312248; Kanungo et al. 2002,
 /// doi:10.1109/TPAMI.2002.1017616). A cluster that loses all its points is restarted at the point farthest from its centroid.
+/// Where it rests and clusters are small, single points are exchanged as long as that helps (Hartigan 1975).
 ///
 /// # Arguments
 /// * `points`: any number of points, any unit.
