@@ -30,6 +30,12 @@ fn bench(c: &mut Criterion) {
     group.sample_size(10);
     let options = Options::default().with_iterations(50_000);
     group.bench_function("solve-50000/n100-m8", |b| b.iter(|| solve(black_box(&problem), &options)));
+    let fewer = Points(&nodes[..41]);
+    let Ok(small) = Problem::new(&fewer, 5) else { return };
+    let Ok(solution) = solve(&small, &options) else { return };
+    group.bench_function("columns/n40-m5", |b| {
+        b.iter(|| lower_bound::columns(black_box(&small), &solution.routes, &mut || true));
+    });
     group.finish();
     let mut fleet = Fleet::new(Revisit::All, Absorb::NearestCluster);
     for _ in 0..8 {

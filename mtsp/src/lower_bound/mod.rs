@@ -12,6 +12,7 @@
 //! | other vehicles, makespan | ([`forest`] with at most m routes) / m | the longest is at least the mean over all m |
 //! | limits, forbidden and required pairs | those of the problem without them, except that [`radius`] looks at allowed vehicles only | a restriction never improves the best |
 //! | closed routes from one depot, total and m makespans | [`tour`]: Held-Karp bound of the tour through the depot and all targets | all routes one after the other are a closed walk; leaving out the visits to the depot between them does not lengthen it (triangle inequality) |
+//! | closed routes from one depot, makespan | `columns` (feature `columns`): prizes that no route up to a length collects more than 1 of, and that sum to more than m | m routes up to that length would collect all prizes between them |
 //! | several depots | legs to and from the nearest depot | a relaxation: each route's own depot is no nearer |
 //! | open routes | last legs cost 0 | exact |
 //! | asymmetric distances | the shorter direction between targets | a relaxation |
@@ -19,10 +20,14 @@
 //! Values are rounded down by a bound on the rounding error of their sums. Without the triangle inequality nothing is claimed.
 
 mod ascent;
+#[cfg(feature = "columns")]
+mod columns;
 mod quick;
 mod tour;
 
 pub use ascent::{NumRoutes, forest};
+#[cfg(feature = "columns")]
+pub use columns::columns;
 pub use quick::{pigeonhole, radius};
 pub use tour::tour;
 

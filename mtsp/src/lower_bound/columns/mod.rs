@@ -1,0 +1,224 @@
+//! The makespan bound by column generation: no `m` routes of at most a given length cover the targets, not even in fractions.
+//!
+//! If all routes are at most `L` long, then some routes `r`, each taken once, visit every target. Allow fractions of routes: with `a_ir` the visits of
+//! route r to target i, the least number of routes is the linear program and its dual
+//!
+//! ```text
+//! min sum x_r,  sum_r a_ir x_r >= 1,  x >= 0     =     max sum p_i,  sum_i a_ir p_i <= 1 for all routes r of length <= L,  p >= 0
+//! ```
+//!
+//! Prizes `p` that no route of length at most `L` collects more than 1 of, and that sum to more than `m`, prove that every solution has a route longer
+//! than `L`. Prizes come from the program over the routes known so far, and routes that collect too much from [`price`]. Routes may there revisit a
+//! target once they have been away from its neighbourhood (ng-routes: Baldacci, Mingozzi, Roberti 2011, doi:10.1287/opre.1110.0975), which only
+//! weakens the bound. The greatest `L` that is refuted is found by bisection.
+
+mod completion;
+mod master;
+mod pricing;
+
+use super::both;
+use crate::check::check;
+use crate::error::Error;
+use crate::problem::Problem;
+use christofides::Metric;
+use master::prizes;
+use pricing::{Effort, price};
+
+/// Targets at most: the memory of a route is a bit set.
+pub(super) const TARGETS: usize = 128;
+
+/// The bisection ends when the interval is this part of the bound.
+const PRECISION: f64 = 1e-3;
+
+/// The sum of prizes must exceed the number of vehicles by this part: far above the rounding of a hundred sums.
+const MARGIN: f64 = 1e-7;
+
+/// Rounds of pricing a limit is given before it counts as not refuted.
+const ROUNDS: usize = 400;
+
+/// The share of the best prizes so far in those that are priced (Wentges 1997, doi:10.1016/S0969-6016(97)00004-2).
+const SMOOTHING: f64 = 0.7;
+
+/// Routes kept, and the slack beyond which they are dropped when there are more.
+const KEPT: usize = 4000;
+const FAR: f64 = 0.1;
+
+/// A lower bound on the makespan, far tighter than that of [`both`] where routes are short, by column generation.
+///
+/// # Arguments
+/// * `routes`: some solution; the better it is, the faster. The bound is below its makespan.
+/// * `proceed`: asked before every pricing; false ends the search with the bound proven by then.
+///
+/// # Returns
+/// The bound, at least that of [`both`], and no more than this for other variants: it takes closed routes from one depot, without limits and forbidden
+/// pairs, symmetric distances, at most 128 targets. Deterministic as long as `proceed` is.
+///
+/// # Errors
+/// Those of [`check`](crate::check()) for the routes given.
+///
+/// # Complexity
+/// Exponential at worst; some 10 s for 100 targets and 8 vehicles. Where routes have more than some twenty targets it gives up early.
+///
+/// # Examples
+/// ```
+/// use christofides::Points;
+/// use mtsp::{Options, Problem, lower_bound, solve};
+///
+/// // Two vehicles, three groups of two targets on a circle: one vehicle has two groups.
+/// let nodes = [[0.0, 0.0], [10.0, 1.0], [10.0, -1.0], [-5.0, 8.0], [-6.0, 7.0], [-5.0, -8.0], [-6.0, -7.0]];
+/// let metric = Points(&nodes);
+/// let problem = Problem::new(&metric, 2)?;
+/// let solution = solve(&problem, &Options::default().with_iterations(1000))?;
+/// let bound = lower_bound::columns(&problem, &solution.routes, &mut || true)?;
+/// assert!(bound > solution.lower_bounds.makespan && bound <= solution.makespan);
+/// # Ok::<(), mtsp::Error>(())
+/// ```
+pub fn columns<M: Metric>(
+    problem: &Problem<'_, M>,
+    routes: &[Vec<usize>],
+    proceed: &mut dyn FnMut() -> bool,
+) -> Result<f64, Error> {
+    let makespan = check(problem, routes)?.makespan;
+    let mut low = both(problem).makespan;
+    let Some(graph) = Graph::new(problem) else { return Ok(low) };
+    let mut cover = Cover::new(&graph, routes, problem);
+    let mut high = makespan;
+    while high - low > PRECISION * high {
+        // The bound is mostly above the middle.
+        let limit = low + 0.75 * (high - low);
+        match cover.refutes(limit, proceed) {
+            Outcome::Refuted => low = limit,
+            Outcome::Covered => high = limit,
+            Outcome::Open => break,
+        }
+    }
+    Ok(low)
+}
+
+/// Distances with half of each service cost at either end, node 0 the depot, nodes 1.. the targets.
+pub(super) struct Graph {
+    pub nodes: usize,
+    vehicles: usize,
+    legs: Vec<f64>,
+    /// For each target the others by distance.
+    pub near: Vec<Vec<usize>>,
+}
+
+impl Graph {
+    fn new<M: Metric>(problem: &Problem<'_, M>) -> Option<Self> {
+        let depot = problem.basic_depot()?;
+        let targets = problem.targets();
+        if targets.is_empty() || targets.len() > TARGETS {
+            return None;
+        }
+        let mut places = vec![depot];
+        places.extend(targets);
+        let nodes = places.len();
+        let half = |i: usize| if i == 0 { 0.0 } else { 0.5 * problem.service()[places[i]] };
+        let mut legs = vec![0.0; nodes * nodes];
+        for i in 0..nodes {
+            for j in (0..nodes).filter(|&j| j != i) {
+                let leg = problem.leg(places[i], places[j]).ok()?;
+                if leg != problem.metric().distance(places[j], places[i]) {
+                    return None;
+                }
+                // The sum of halves first: the same both ways.
+                legs[i * nodes + j] = leg + (half(i) + half(j));
+            }
+        }
+        let mut graph = Self { nodes, vehicles: problem.vehicles(), legs, near: vec![vec![]; nodes] };
+        for i in 1..nodes {
+            let mut others: Vec<usize> = (1..nodes).filter(|&j| j != i).collect();
+            others.sort_by(|&a, &b| graph.leg(i, a).total_cmp(&graph.leg(i, b)));
+            graph.near[i] = others;
+        }
+        Some(graph)
+    }
+
+    #[inline]
+    pub fn leg(&self, i: usize, j: usize) -> f64 {
+        self.legs[i * self.nodes + j]
+    }
+
+    fn length(&self, route: &[usize]) -> f64 {
+        let (Some(&first), Some(&last)) = (route.first(), route.last()) else { return 0.0 };
+        let inner: f64 = route.windows(2).map(|leg| self.leg(leg[0], leg[1])).sum();
+        self.leg(0, first) + inner + self.leg(last, 0)
+    }
+}
+
+enum Outcome {
+    /// There is no fractional cover with this limit: proven.
+    Refuted,
+    /// There is one.
+    Covered,
+    /// Neither was found.
+    Open,
+}
+
+/// The routes known so far, with their lengths; limits share them.
+struct Cover<'a> {
+    graph: &'a Graph,
+    routes: Vec<(f64, Vec<usize>)>,
+}
+
+impl<'a> Cover<'a> {
+    fn new<M: Metric>(graph: &'a Graph, routes: &[Vec<usize>], problem: &Problem<'_, M>) -> Self {
+        let mut cover = Self { graph, routes: vec![] };
+        let position = |target: &usize| problem.targets().binary_search(target).map_or(0, |i| i + 1);
+        let given = routes.iter().map(|route| route.iter().map(position).collect::<Vec<usize>>());
+        // Routes to single targets keep the program bounded.
+        cover.add(given.chain((1..graph.nodes).map(|i| vec![i])).collect());
+        cover
+    }
+
+    fn add(&mut self, routes: Vec<Vec<usize>>) {
+        let graph = self.graph;
+        self.routes.extend(routes.into_iter().map(|route| (graph.length(&route), route)));
+    }
+
+    fn refutes(&mut self, limit: f64, proceed: &mut dyn FnMut() -> bool) -> Outcome {
+        let vehicles = self.graph.vehicles as f64;
+        let (mut centre, mut smoothing, mut effort) = (None::<Vec<f64>>, SMOOTHING, Effort::Quick);
+        for _ in 0..ROUNDS {
+            let Some(prizes) = self.prizes(limit) else { return Outcome::Open };
+            if prizes.iter().sum::<f64>() <= vehicles {
+                return Outcome::Covered;
+            }
+            let old = centre.as_ref().unwrap_or(&prizes);
+            let mixed: Vec<f64> =
+                old.iter().zip(&prizes).map(|(o, p)| smoothing * o + (1.0 - smoothing) * p).collect();
+            if !proceed() {
+                return Outcome::Open;
+            }
+            let Some(found) = price(self.graph, &mixed, limit, effort) else { return Outcome::Open };
+            let sum = mixed.iter().sum::<f64>() / found.most;
+            if effort == Effort::Exact && sum > vehicles * (1.0 + MARGIN) {
+                return Outcome::Refuted;
+            }
+            if found.routes.is_empty() {
+                match effort {
+                    Effort::Quick => effort = Effort::Exact,
+                    // Nothing collects too much even of prizes that are hardly mixed: the program is solved.
+                    Effort::Exact if smoothing < 0.05 => return Outcome::Open,
+                    Effort::Exact => smoothing *= 0.5,
+                }
+            }
+            self.add(found.routes);
+            centre = Some(mixed.into_iter().map(|p| p / found.most).collect());
+        }
+        Outcome::Open
+    }
+
+    /// The best prizes for the routes within the limit; routes far from collecting 1 are dropped when there are many.
+    fn prizes(&mut self, limit: f64) -> Option<Vec<f64>> {
+        let within: Vec<&[usize]> =
+            self.routes.iter().filter(|r| r.0 <= limit).map(|r| r.1.as_slice()).collect();
+        let prizes = prizes(self.graph.nodes, &within)?;
+        if self.routes.len() > KEPT {
+            let collects = |route: &[usize]| route.iter().map(|&i| prizes[i]).sum::<f64>();
+            self.routes.retain(|r| r.1.len() == 1 || r.0 > limit || collects(&r.1) > 1.0 - FAR);
+        }
+        Some(prizes)
+    }
+}
