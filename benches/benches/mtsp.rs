@@ -34,7 +34,7 @@ fn bench(c: &mut Criterion) {
     let Ok(small) = Problem::new(&fewer, 5) else { return };
     let Ok(solution) = solve(&small, &options) else { return };
     group.bench_function("columns/n40-m5", |b| {
-        b.iter(|| lower_bound::columns(black_box(&small), &solution.routes, &mut || true));
+        b.iter(|| lower_bound::columns(black_box(&small), &solution.routes, 0, &mut || true));
     });
     group.finish();
     let mut fleet = Fleet::new(Revisit::All, Absorb::NearestCluster);

@@ -1,7 +1,9 @@
 //! Routes for the nodes of a file, with a certificate.
 //!
-//! `routes FILE.tsp|FILE.csv --vehicles M [--objective min-max|min-sum] [--open] [--seconds S | --iterations N] [--seed K] [--json]`
+//! `routes FILE.tsp|FILE.csv --vehicles M [--objective min-max|min-sum] [--open] [--seconds S | --iterations N] [--seed K] [--json]
+//! [--bound-seconds S]`
 //!
+//! `--bound-seconds` takes that long at most for a tighter lower bound of the longest closed route (feature `columns`).
 //! The first node is the depot; distances are Euclidean, not rounded.
 
 use christofides::Points;
@@ -14,6 +16,9 @@ const ITERATIONS_A_SECOND: f64 = 500_000.0;
 const STORED: usize = 3000;
 const ITERATIONS_A_SECOND_BEYOND: f64 = 130_000.0;
 
+#[cfg(feature = "columns")]
+const MAX_CUTS: usize = 150;
+
 struct Arguments {
     file: String,
     vehicles: usize,
@@ -23,6 +28,7 @@ struct Arguments {
     iterations: Option<u64>,
     seed: u64,
     json: bool,
+    bound_seconds: f64,
 }
 
 fn arguments() -> Result<Arguments, String> {
@@ -36,6 +42,7 @@ fn arguments() -> Result<Arguments, String> {
         iterations: None,
         seed: 0,
         json: false,
+        bound_seconds: 0.0,
     };
     while let Some(key) = given.next() {
         let mut value = || given.next().ok_or(format!("{key} needs a value"));
@@ -45,6 +52,7 @@ fn arguments() -> Result<Arguments, String> {
             "--vehicles" => a.vehicles = number(&value()?)?,
             "--seconds" => a.seconds = number(&value()?)?,
             "--iterations" => a.iterations = Some(number(&value()?)?),
+            "--bound-seconds" => a.bound_seconds = number(&value()?)?,
             "--seed" => a.seed = number(&value()?)?,
             "--objective" => {
                 a.objective = match value()?.as_str() {
@@ -94,7 +102,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let mut best = f64::INFINITY;
     let mut trace = Vec::new();
-    let solution = solve_with(&problem, &options, &mut |progress| {
+    let mut solution = solve_with(&problem, &options, &mut |progress| {
         let value = if a.objective == Objective::Total { progress.total_cost } else { progress.makespan };
         if value < best {
             best = value;
@@ -103,12 +111,33 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         a.iterations.is_some() || begin.elapsed().as_secs_f64() < a.seconds
     })?;
     let seconds = begin.elapsed().as_secs_f64();
+    if a.bound_seconds > 0.0 {
+        tighten(&problem, &mut solution, a.bound_seconds)?;
+    }
     if a.json {
         print_json(&a, nodes.len(), &solution, seconds)
     } else {
         print(&a, &solution, seconds, &trace)
     }
     Ok(())
+}
+
+#[cfg(feature = "columns")]
+fn tighten(
+    problem: &Problem<'_, Points<'_, 2>>,
+    solution: &mut Solution,
+    seconds: f64,
+) -> Result<(), mtsp::Error> {
+    let begin = Instant::now();
+    let proceed = &mut || begin.elapsed().as_secs_f64() < seconds;
+    solution.lower_bounds.makespan =
+        mtsp::lower_bound::columns(problem, &solution.routes, MAX_CUTS, proceed)?;
+    Ok(())
+}
+
+#[cfg(not(feature = "columns"))]
+fn tighten(_: &Problem<'_, Points<'_, 2>>, _: &mut Solution, _: f64) -> Result<(), String> {
+    Err("--bound-seconds needs the feature columns".into())
 }
 
 fn print_json(a: &Arguments, n: usize, solution: &Solution, seconds: f64) {

@@ -45,7 +45,7 @@
 //! `serde`: serialisation of solutions. `columns`: `lower_bound::columns`, the tightest bound of the makespan, by column generation.
 //!
 //! # References
-//! Frederickson, Hecht, Kim 1978; Held and Karp 1970; Baldacci, Mingozzi, Roberti 2011; Christiaens and Vanden Berghe 2020; Gao, Mandal, Bhattacharya 2020.
+//! Frederickson, Hecht, Kim 1978; Held and Karp 1970; Jepsen et al. 2008; Baldacci, Mingozzi, Roberti 2011; Christiaens and Vanden Berghe 2020; Gao, Mandal, Bhattacharya 2020.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

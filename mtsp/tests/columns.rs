@@ -16,10 +16,12 @@ proptest! {
         let metric = instance.metric();
         let problem = Problem::new(&metric, instance.vehicles).unwrap().with_service(instance.service.clone()).unwrap();
         let solution = solve(&problem, &Options::default().with_iterations(ITERATIONS)).unwrap();
-        let bound = lower_bound::columns(&problem, &solution.routes, &mut || true).unwrap();
         let best = optimum(&problem, Objective::Makespan);
-        prop_assert!(bound <= best * (1.0 + 1e-12), "bound {} above the optimum {}", bound, best);
-        prop_assert!(bound >= solution.lower_bounds.makespan);
+        for cuts in [0, 60] {
+            let bound = lower_bound::columns(&problem, &solution.routes, cuts, &mut || true).unwrap();
+            prop_assert!(bound <= best * (1.0 + 1e-12), "bound {} above the optimum {}", bound, best);
+            prop_assert!(bound >= solution.lower_bounds.makespan);
+        }
     }
 
     #[test]
@@ -28,7 +30,7 @@ proptest! {
         let problem = Problem::new(&metric, instance.vehicles).unwrap();
         let mut routes = vec![vec![]; instance.vehicles];
         routes[0] = problem.targets().to_vec();
-        let bound = lower_bound::columns(&problem, &routes, &mut || true).unwrap();
+        let bound = lower_bound::columns(&problem, &routes, 0, &mut || true).unwrap();
         prop_assert!(bound <= optimum(&problem, Objective::Makespan) * (1.0 + 1e-12));
     }
 }
@@ -47,8 +49,10 @@ fn tighter_than_the_others_where_routes_are_short() {
         let metric = christofides::Points(&nodes);
         let problem = Problem::new(&metric, 5).unwrap();
         let solution = solve(&problem, &Options::default().with_iterations(20_000)).unwrap();
-        let bound = lower_bound::columns(&problem, &solution.routes, &mut || true).unwrap();
+        let bound = lower_bound::columns(&problem, &solution.routes, 0, &mut || true).unwrap();
         assert!(bound <= solution.makespan && bound > 1.01 * solution.lower_bounds.makespan, "{bound}");
+        let cut = lower_bound::columns(&problem, &solution.routes, 100, &mut || true).unwrap();
+        assert!(cut <= solution.makespan && cut > 1.002 * bound, "{cut} after {bound}");
     }
 }
 
@@ -63,9 +67,9 @@ fn other_variants_keep_the_other_bounds() {
         closed.clone().with_limits(vec![30.0; 2]).unwrap(),
         closed.clone().with_depots(vec![0; 2], vec![End::At(0), End::Open]).unwrap(),
     ] {
-        let bound = lower_bound::columns(&problem, &routes, &mut || true).unwrap();
+        let bound = lower_bound::columns(&problem, &routes, 0, &mut || true).unwrap();
         assert_eq!(bound, lower_bound::both(&problem).makespan);
     }
-    let stopped = lower_bound::columns(&closed, &routes, &mut || false).unwrap();
+    let stopped = lower_bound::columns(&closed, &routes, 0, &mut || false).unwrap();
     assert_eq!(stopped, lower_bound::both(&closed).makespan);
 }

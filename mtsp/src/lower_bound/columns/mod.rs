@@ -10,9 +10,11 @@
 //! Prizes `p` that no route of length at most `L` collects more than 1 of, and that sum to more than `m`, prove that every solution has a route longer
 //! than `L`. Prizes come from the program over the routes known so far, and routes that collect too much from [`price`]. Routes may there revisit a
 //! target once they have been away from its neighbourhood (ng-routes: Baldacci, Mingozzi, Roberti 2011, doi:10.1287/opre.1110.0975), which only
-//! weakens the bound. The greatest `L` that is refuted is found by bisection.
+//! weakens the bound. Cuts tighten the program, at a charge to the routes in them. The greatest `L` that is refuted is found by bisection, without
+//! cuts first.
 
 mod completion;
+mod cuts;
 mod master;
 mod pricing;
 
@@ -21,7 +23,8 @@ use crate::check::check;
 use crate::error::Error;
 use crate::problem::Problem;
 use christofides::Metric;
-use master::prizes;
+use cuts::{CUTS, Triple, violated};
+use master::{Prices, master};
 use pricing::{Effort, price};
 
 /// Targets at most: the memory of a route is a bit set.
@@ -43,10 +46,14 @@ const SMOOTHING: f64 = 0.7;
 const KEPT: usize = 4000;
 const FAR: f64 = 0.1;
 
+/// A cut with a smaller charge does nothing.
+const IDLE: f64 = 1e-6;
+
 /// A lower bound on the makespan, far tighter than that of [`both`] where routes are short, by column generation.
 ///
 /// # Arguments
 /// * `routes`: some solution; the better it is, the faster. The bound is below its makespan.
+/// * `max_cuts`: cuts at most, no more than 192 are used; 0 for the plain program, which is faster.
 /// * `proceed`: asked before every pricing; false ends the search with the bound proven by then.
 ///
 /// # Returns
@@ -57,7 +64,7 @@ const FAR: f64 = 0.1;
 /// Those of [`check`](crate::check()) for the routes given.
 ///
 /// # Complexity
-/// Exponential at worst; some 10 s for 100 targets and 8 vehicles. Where routes have more than some twenty targets it gives up early.
+/// Exponential at worst; some 10 s for 100 targets and 8 vehicles, minutes with cuts. Where routes have more than some twenty targets it gives up early.
 ///
 /// # Examples
 /// ```
@@ -69,27 +76,33 @@ const FAR: f64 = 0.1;
 /// let metric = Points(&nodes);
 /// let problem = Problem::new(&metric, 2)?;
 /// let solution = solve(&problem, &Options::default().with_iterations(1000))?;
-/// let bound = lower_bound::columns(&problem, &solution.routes, &mut || true)?;
+/// let bound = lower_bound::columns(&problem, &solution.routes, 0, &mut || true)?;
 /// assert!(bound > solution.lower_bounds.makespan && bound <= solution.makespan);
 /// # Ok::<(), mtsp::Error>(())
 /// ```
 pub fn columns<M: Metric>(
     problem: &Problem<'_, M>,
     routes: &[Vec<usize>],
+    max_cuts: usize,
     proceed: &mut dyn FnMut() -> bool,
 ) -> Result<f64, Error> {
     let makespan = check(problem, routes)?.makespan;
     let mut low = both(problem).makespan;
     let Some(graph) = Graph::new(problem) else { return Ok(low) };
     let mut cover = Cover::new(&graph, routes, problem);
-    let mut high = makespan;
-    while high - low > PRECISION * high {
-        // The bound is mostly above the middle.
-        let limit = low + 0.75 * (high - low);
-        match cover.refutes(limit, proceed) {
-            Outcome::Refuted => low = limit,
-            Outcome::Covered => high = limit,
-            Outcome::Open => break,
+    for max_cuts in [0, max_cuts.min(CUTS)] {
+        let mut high = makespan;
+        while high - low > PRECISION * high {
+            // The bound is mostly above the middle, with cuts not so far.
+            let limit = low + if max_cuts == 0 { 0.75 } else { 0.5 } * (high - low);
+            match cover.refutes(limit, max_cuts, proceed) {
+                Outcome::Refuted => low = limit,
+                Outcome::Covered => high = limit,
+                Outcome::Open => break,
+            }
+        }
+        if max_cuts > 0 || makespan - low <= PRECISION * makespan {
+            break;
         }
     }
     Ok(low)
@@ -156,15 +169,16 @@ enum Outcome {
     Open,
 }
 
-/// The routes known so far, with their lengths; limits share them.
+/// The routes known so far, with their lengths, and cuts; limits share them.
 struct Cover<'a> {
     graph: &'a Graph,
     routes: Vec<(f64, Vec<usize>)>,
+    cuts: Vec<Triple>,
 }
 
 impl<'a> Cover<'a> {
     fn new<M: Metric>(graph: &'a Graph, routes: &[Vec<usize>], problem: &Problem<'_, M>) -> Self {
-        let mut cover = Self { graph, routes: vec![] };
+        let mut cover = Self { graph, routes: vec![], cuts: vec![] };
         let position = |target: &usize| problem.targets().binary_search(target).map_or(0, |i| i + 1);
         let given = routes.iter().map(|route| route.iter().map(position).collect::<Vec<usize>>());
         // Routes to single targets keep the program bounded.
@@ -177,48 +191,75 @@ impl<'a> Cover<'a> {
         self.routes.extend(routes.into_iter().map(|route| (graph.length(&route), route)));
     }
 
-    fn refutes(&mut self, limit: f64, proceed: &mut dyn FnMut() -> bool) -> Outcome {
+    fn refutes(&mut self, limit: f64, max_cuts: usize, proceed: &mut dyn FnMut() -> bool) -> Outcome {
         let vehicles = self.graph.vehicles as f64;
-        let (mut centre, mut smoothing, mut effort) = (None::<Vec<f64>>, SMOOTHING, Effort::Quick);
+        let (mut centre, mut smoothing, mut effort) = (None::<Prices>, SMOOTHING, Effort::Quick);
         for _ in 0..ROUNDS {
-            let Some(prizes) = self.prizes(limit) else { return Outcome::Open };
-            if prizes.iter().sum::<f64>() <= vehicles {
-                return Outcome::Covered;
+            let Some((prices, shares)) = self.prices(limit) else { return Outcome::Open };
+            if prices.sum() <= vehicles {
+                if !self.cut(limit, &prices, &shares, max_cuts) {
+                    return Outcome::Covered;
+                }
+                (centre, smoothing, effort) = (None, SMOOTHING, Effort::Quick);
+                continue;
             }
-            let old = centre.as_ref().unwrap_or(&prizes);
-            let mixed: Vec<f64> =
-                old.iter().zip(&prizes).map(|(o, p)| smoothing * o + (1.0 - smoothing) * p).collect();
+            let mixed = centre.as_ref().unwrap_or(&prices).mixed(smoothing, &prices);
             if !proceed() {
                 return Outcome::Open;
             }
-            let Some(found) = price(self.graph, &mixed, limit, effort) else { return Outcome::Open };
-            let sum = mixed.iter().sum::<f64>() / found.most;
-            if effort == Effort::Exact && sum > vehicles * (1.0 + MARGIN) {
+            let Some(found) = price(self.graph, &mixed, &self.cuts, limit, effort) else {
+                return Outcome::Open;
+            };
+            let mixed = mixed.divided_by(found.most);
+            if effort == Effort::Exact && mixed.sum() > vehicles * (1.0 + MARGIN) {
                 return Outcome::Refuted;
             }
             if found.routes.is_empty() {
                 match effort {
                     Effort::Quick => effort = Effort::Exact,
-                    // Nothing collects too much even of prizes that are hardly mixed: the program is solved.
+                    // Nothing collects too much even at prices that are hardly mixed: the program is solved.
                     Effort::Exact if smoothing < 0.05 => return Outcome::Open,
                     Effort::Exact => smoothing *= 0.5,
                 }
             }
             self.add(found.routes);
-            centre = Some(mixed.into_iter().map(|p| p / found.most).collect());
+            centre = Some(mixed);
         }
         Outcome::Open
     }
 
-    /// The best prizes for the routes within the limit; routes far from collecting 1 are dropped when there are many.
-    fn prizes(&mut self, limit: f64) -> Option<Vec<f64>> {
-        let within: Vec<&[usize]> =
-            self.routes.iter().filter(|r| r.0 <= limit).map(|r| r.1.as_slice()).collect();
-        let prizes = prizes(self.graph.nodes, &within)?;
+    fn within(&self, limit: f64) -> Vec<&[usize]> {
+        self.routes.iter().filter(|r| r.0 <= limit).map(|r| r.1.as_slice()).collect()
+    }
+
+    /// The best prices for the routes within the limit, and the shares of these routes.
+    fn prices(&mut self, limit: f64) -> Option<(Prices, Vec<f64>)> {
         if self.routes.len() > KEPT {
-            let collects = |route: &[usize]| route.iter().map(|&i| prizes[i]).sum::<f64>();
-            self.routes.retain(|r| r.1.len() == 1 || r.0 > limit || collects(&r.1) > 1.0 - FAR);
+            let (prices, _) = master(self.graph.nodes, &self.within(limit), &self.cuts)?;
+            let cuts = &self.cuts;
+            // Routes far from collecting 1 are dropped, those beyond the limit with them.
+            self.routes
+                .retain(|r| r.1.len() == 1 || (r.0 <= limit && prices.collected(&r.1, cuts) > 1.0 - FAR));
         }
-        Some(prizes)
+        master(self.graph.nodes, &self.within(limit), &self.cuts)
+    }
+
+    /// Adds cuts that the shares violate, in the place of those without a charge; whether there are any.
+    fn cut(&mut self, limit: f64, prices: &Prices, shares: &[f64], max_cuts: usize) -> bool {
+        if max_cuts == 0 {
+            return false;
+        }
+        let found = violated(self.graph.nodes, &self.within(limit), shares);
+        let mut charges = prices.charges.iter();
+        if self.cuts.len() + found.len() > max_cuts {
+            self.cuts.retain(|_| charges.next().is_some_and(|&charge| charge > IDLE));
+        }
+        let before = self.cuts.len();
+        for triple in found {
+            if self.cuts.len() < max_cuts && !self.cuts.contains(&triple) {
+                self.cuts.push(triple);
+            }
+        }
+        self.cuts.len() > before
     }
 }

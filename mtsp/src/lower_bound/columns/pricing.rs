@@ -4,6 +4,8 @@
 //! are reached from the depot within half the limit.
 
 use super::completion::Completion;
+use super::cuts::{Parities, Triple};
+use super::master::Prices;
 use super::{Graph, TARGETS};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -40,8 +42,9 @@ struct Label {
     length: f64,
     collected: f64,
     memory: u128,
-    target: usize,
-    before: usize,
+    parities: Parities,
+    target: u32,
+    before: u32,
 }
 
 /// A length in the queue; lengths are finite.
@@ -63,16 +66,30 @@ impl Ord for Length {
 }
 
 /// The best routes of length at most `limit`; none if there are too many labels.
-pub(super) fn price(graph: &Graph, prizes: &[f64], limit: f64, effort: Effort) -> Option<Priced> {
-    let completion = Completion::new(graph, prizes, limit);
-    let mut search = Search { graph, prizes, limit, effort, completion, labels: vec![], kept: vec![] };
+pub(super) fn price(
+    graph: &Graph,
+    prices: &Prices,
+    cuts: &[Triple],
+    limit: f64,
+    effort: Effort,
+) -> Option<Priced> {
+    // Charges only take from what a route collects: the bound without them holds.
+    let completion = Completion::new(graph, &prices.prizes, limit);
+    let mut cuts_of = vec![vec![]; graph.nodes];
+    for (cut, triple) in cuts.iter().enumerate().filter(|(cut, _)| prices.charges[*cut] > 0.0) {
+        triple.iter().for_each(|&target| cuts_of[target].push(cut));
+    }
+    let (labels, kept) = (vec![], vec![vec![]; graph.nodes]);
+    let mut search = Search { graph, prices, cuts_of, limit, effort, completion, labels, kept };
     search.grow()?;
     Some(search.join())
 }
 
 struct Search<'a> {
     graph: &'a Graph,
-    prizes: &'a [f64],
+    prices: &'a Prices,
+    /// The cuts with a charge that each target is in.
+    cuts_of: Vec<Vec<usize>>,
     limit: f64,
     effort: Effort,
     completion: Option<Completion>,
@@ -88,8 +105,8 @@ impl Search<'_> {
         let remembered: Vec<u128> = (0..n)
             .map(|v| self.graph.near[v].iter().take(NEIGHBOURHOOD - 1).fold(bit(v), |set, &w| set | bit(w)))
             .collect();
-        self.kept = vec![vec![]; n];
-        self.labels.push(Label { length: 0.0, collected: 0.0, memory: 0, target: 0, before: 0 });
+        let parities = Parities::default();
+        self.labels.push(Label { length: 0.0, collected: 0.0, memory: 0, parities, target: 0, before: 0 });
         let mut queue = BinaryHeap::new();
         let mut next = Some(0);
         while let Some(index) = next {
@@ -104,22 +121,26 @@ impl Search<'_> {
         Some(())
     }
 
-    /// Keeps a label unless one that is no longer has collected as much and remembers no more.
+    /// Keeps a label unless one that is no longer has collected as much, whatever charges it may yet have to pay, and remembers no more.
     fn keep(&mut self, index: usize) -> bool {
         let label = &self.labels[index];
-        let rivals = &self.kept[label.target];
+        let rivals = &self.kept[label.target as usize];
         let mut place = 0;
         for &rival in rivals {
             let rival = &self.labels[rival];
             if rival.collected < label.collected - EPSILON {
                 break;
             }
-            if self.effort == Effort::Quick || rival.memory & !label.memory == 0 {
+            let charge = || rival.parities.charge_beyond(&label.parities, &self.prices.charges);
+            let exact = || {
+                rival.memory & !label.memory == 0 && rival.collected - charge() >= label.collected - EPSILON
+            };
+            if self.effort == Effort::Quick || exact() {
                 return false;
             }
             place += 1;
         }
-        self.kept[label.target].insert(place, index);
+        self.kept[label.target as usize].insert(place, index);
         true
     }
 
@@ -129,13 +150,13 @@ impl Search<'_> {
         remembered: &[u128],
         queue: &mut BinaryHeap<Reverse<(Length, usize)>>,
     ) {
-        let Label { length, collected, memory, target, .. } = self.labels[index];
+        let Label { length, collected, memory, parities, target, .. } = self.labels[index];
         for next in 1..self.graph.nodes {
-            if next == target || memory & bit(next) != 0 || self.prizes[next] <= 0.0 {
+            if next == target as usize || memory & bit(next) != 0 || self.prices.prizes[next] <= 0.0 {
                 continue;
             }
-            let length = length + self.graph.leg(target, next);
-            let collected = collected + self.prizes[next];
+            let length = length + self.graph.leg(target as usize, next);
+            let mut collected = collected + self.prices.prizes[next];
             if length > 0.5 * self.limit * (1.0 + EPSILON) {
                 continue;
             }
@@ -143,9 +164,16 @@ impl Search<'_> {
             if self.completion.as_ref().is_some_and(|c| collected + c.most(next, rest) <= 1.0) {
                 continue;
             }
+            let mut parities = parities;
+            for &cut in &self.cuts_of[next] {
+                if parities.flip(cut) {
+                    collected -= self.prices.charges[cut];
+                }
+            }
             let memory = memory & remembered[next] | bit(next);
             queue.push(Reverse((Length(length), self.labels.len())));
-            self.labels.push(Label { length, collected, memory, target: next, before: index });
+            let (target, before) = (next as u32, index as u32);
+            self.labels.push(Label { length, collected, memory, parities, target, before });
         }
     }
 
@@ -179,8 +207,10 @@ impl Search<'_> {
                     break;
                 }
                 if tail.length <= rest && head.memory & tail.memory == 0 {
-                    best = (collected, a, b);
-                    break;
+                    let charge = head.parities.charge_of_both(&tail.parities, &self.prices.charges);
+                    if collected - charge > best.0 + EPSILON {
+                        best = (collected - charge, a, b);
+                    }
                 }
             }
         }
@@ -199,8 +229,8 @@ impl Search<'_> {
     fn path(&self, mut index: usize) -> Vec<usize> {
         let mut path = vec![];
         while index != 0 {
-            path.push(self.labels[index].target);
-            index = self.labels[index].before;
+            path.push(self.labels[index].target as usize);
+            index = self.labels[index].before as usize;
         }
         path
     }
