@@ -1,4 +1,4 @@
-//! How long events take: 100 targets and 8 vehicles, a target that appears, vanishes or moves, a vehicle that fails.
+//! How long events take: 100 targets and 8 vehicles, a target that appears, vanishes or moves, a vehicle that fails, a new wind.
 //!
 //! `cargo run --release -p uav-planner --example replanning`
 
@@ -30,6 +30,7 @@ fn main() -> Result<(), Error> {
             ("a target vanishes", Event::TargetVanishes(17)),
             ("a target moves by 25 m", Event::TargetMoves(60, moved(&first, 60))),
             ("a vehicle fails", Event::VehicleFails(3)),
+            ("a wind of 5 m/s comes up", Event::WindChanges([4.0, 3.0])),
         ];
         for (name, event) in events {
             let mut replanner = first.clone();

@@ -14,7 +14,7 @@
 //! | whole routes | entries that are best for a route, not for a leg | `whole_route.rs`, `time_model.rs` |
 //! | events | what is being flown stays, the rest follows the mission as it changes | `replan/` |
 //! | certificate | makespan and total beside lower bounds | `certificate.rs` |
-//! | verification | all controls integrated again, independently | `verify.rs` |
+//! | verification | all controls integrated again, independently, each leg in the wind it was planned for | `verify.rs`, `airs.rs` |
 //!
 //! # Example
 //! ```
@@ -48,6 +48,7 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod airs;
 mod allocation;
 mod bound;
 mod certificate;

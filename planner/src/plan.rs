@@ -24,6 +24,9 @@ pub struct Plan {
     /// Targets that were not where they are at the start, and since when they are (s after the mission's start): nobody has to
     /// keep away from them earlier ([`Replanner`](crate::Replanner)).
     pub known_since: Vec<(usize, f64)>,
+    /// Winds that were planned for before the mission's (m/s: east, north), each with the time (s after the mission's start) at
+    /// which it changed, ascending: a leg that starts by then was planned for it ([`Event::WindChanges`](crate::Event)).
+    pub earlier_winds: Vec<(f64, [f64; 2])>,
 }
 
 /// A loiter circle: what is flown around a target, or around several merged ones.

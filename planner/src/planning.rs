@@ -68,6 +68,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         warnings: Vec::new(),
         skipped: Vec::new(),
         known_since: Vec::new(),
+        earlier_winds: Vec::new(),
     };
     delay_starts(&mut plan, mission);
     plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);
@@ -141,7 +142,7 @@ pub(crate) fn calibrated<'a>(
 
 /// Does something for every route; with the feature `rayon` side by side. The first error in order counts, on any number of
 /// threads.
-fn for_all<T: Send, R: Send>(
+pub(crate) fn for_all<T: Send, R: Send>(
     items: Vec<T>,
     work: impl Fn(T) -> Result<R, Error> + Send + Sync,
 ) -> Result<Vec<R>, Error> {

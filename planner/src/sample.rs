@@ -1,9 +1,9 @@
 //! Where every vehicle is at any moment of a plan.
 
-use crate::circles::{Orbit, orbits};
+use crate::airs::Airs;
 use crate::mission::Mission;
 use crate::plan::{Leg, Phase, Plan, Sample};
-use crate::transition::{Path, Pilot, hover};
+use crate::transition::Path;
 use quad_dynamics::Motion;
 use quad_dynamics::frames::to_wxyz;
 use std::sync::OnceLock;
@@ -12,8 +12,7 @@ use std::sync::OnceLock;
 pub(crate) struct Sampler<'a> {
     plan: &'a Plan,
     mission: &'a Mission,
-    orbits: Vec<Orbit>,
-    pilot: Pilot,
+    airs: Airs<'a>,
     /// The transition of every leg of every vehicle, integrated when it is first asked for.
     paths: Vec<Vec<OnceLock<Option<Path>>>>,
 }
@@ -21,14 +20,13 @@ pub(crate) struct Sampler<'a> {
 impl<'a> Sampler<'a> {
     /// `None` if the mission's circles cannot be flown, or are not the plan's.
     pub(crate) fn new(plan: &'a Plan, mission: &'a Mission) -> Option<Self> {
-        let orbits = orbits(mission).ok()?;
-        if orbits.len() != plan.circles.len() {
+        let airs = Airs::new(plan, mission);
+        if !airs.fit(plan) {
             return None;
         }
-        let pilot = Pilot::new(mission, &orbits);
         let paths =
             plan.vehicles.iter().map(|planned| planned.legs.iter().map(|_| OnceLock::new()).collect());
-        Some(Self { plan, mission, orbits, pilot, paths: paths.collect() })
+        Some(Self { plan, mission, airs, paths: paths.collect() })
     }
 
     /// The moment `time` (s after the mission's start) of a vehicle; hover on its pad before and after its flight.
@@ -54,7 +52,12 @@ impl<'a> Sampler<'a> {
         let flown = planned.legs.get(k).filter(|leg| time >= leg.start_time && time <= leg.end_time());
         flown
             .and_then(|leg| self.in_leg(leg, &self.paths[vehicle][k], time))
-            .unwrap_or_else(|| (hover(self.mission, planned.pad, planned.heading), Phase::Pad, None))
+            .unwrap_or_else(|| (self.airs.at(time).hover(planned.pad, planned.heading), Phase::Pad, None))
+    }
+
+    /// Greatest speed over the ground on a leg (m/s).
+    pub(crate) fn top_speed(&self, leg: &Leg) -> f64 {
+        leg.transition.max_speed.max(self.airs.loiter_speed(leg))
     }
 
     /// Electrical energy of a vehicle's flight (J).
@@ -73,13 +76,14 @@ impl<'a> Sampler<'a> {
         path: &OnceLock<Option<Path>>,
         time: f64,
     ) -> Option<(Motion, Phase, Option<usize>)> {
+        let air = self.airs.at(leg.start_time);
         match leg.loiter {
             Some(loiter) if time >= leg.arrival_time() => {
-                let motion = self.orbits.get(loiter.circle)?.after(loiter.entry, time - leg.arrival_time());
+                let motion = air.orbits.get(loiter.circle)?.after(loiter.entry, time - leg.arrival_time());
                 Some((motion, Phase::Loiter, Some(loiter.circle)))
             }
             _ => {
-                let path = path.get_or_init(|| self.pilot.path(&leg.transition)).as_ref()?;
+                let path = path.get_or_init(|| air.pilot.path(&leg.transition)).as_ref()?;
                 let motion = path(time - leg.start_time);
                 Some((motion, Phase::Transition, leg.loiter.map(|loiter| loiter.circle)))
             }

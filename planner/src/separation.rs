@@ -27,13 +27,12 @@ pub(crate) fn in_the_air<R>(
     let airborne = |vehicle: usize| {
         let planned = &plan.vehicles[vehicle];
         let (first, last) = (planned.legs.first()?, planned.legs.last()?);
-        let transitions = planned.legs.iter().map(|leg| leg.transition.max_speed);
-        let loiters = planned.route.iter().map(|&circle| plan.circles[circle].speed);
         let sampler = &sampler;
+        let speeds = planned.legs.iter().map(|leg| sampler.top_speed(leg));
         Some(Airborne {
             position: Box::new(move |time| sampler.sample(vehicle, time).position),
             flight: [first.start_time, last.end_time()],
-            top_speed: transitions.chain(loiters).fold(0.0, f64::max),
+            top_speed: speeds.fold(0.0, f64::max),
         })
     };
     let fleet: Vec<Option<Airborne>> = (0..plan.vehicles.len()).map(airborne).collect();

@@ -1,10 +1,10 @@
 //! A check of a finished plan that does not trust the solver.
 
-use crate::circles::{Orbit, orbits};
+use crate::airs::{Air, Airs};
 use crate::mission::Mission;
 use crate::plan::{Approach, Certificate, Leg, Miss, Plan};
 use crate::separation::{RESOLUTION, closest_pair, in_the_air};
-use crate::transition::{Pilot, hover, miss};
+use crate::transition::miss;
 use quad_dynamics::Motion;
 
 /// Tolerances of a verification. Defaults: 5 cm, 5 cm/s and 1 degree for the integrated miss.
@@ -141,25 +141,25 @@ impl Plan {
     ///
     /// Every transition's controls are integrated again by the adaptive integrator, from the state in which the vehicle
     /// really is: the loiter state (or hover) computed afresh from mission and entry. The end is compared with the next such
-    /// state; bounds, heights and safe distances (of the targets known at that time) are looked at between knots too; every target must be circled exactly once;
+    /// state; bounds, heights and safe distances (of the targets known at that time) are looked at between knots too, each leg in the wind that it was planned for; every target must be circled exactly once;
     /// vehicles must keep their separation at every moment in the air.
     #[must_use]
     pub fn verify(&self, mission: &Mission, tolerances: &Tolerances) -> Verification {
         let mut verification = Verification::default();
-        let orbits = orbits(mission).unwrap_or_default();
-        let pilot = Pilot::new(mission, &orbits);
+        let airs = Airs::new(self, mission);
         for (vehicle, planned) in self.vehicles.iter().enumerate() {
-            let pad = hover(mission, planned.pad, planned.heading);
-            let mut here = pad;
-            let mut time = planned.legs.first().map_or(0.0, |leg| leg.start_time);
+            let mut time = planned.start_time();
+            let mut here = airs.at(time).hover(planned.pad, planned.heading);
             for (index, leg) in planned.legs.iter().enumerate() {
+                let air = airs.at(leg.start_time);
+                let pad = air.hover(planned.pad, planned.heading);
                 let later: Vec<usize> = self
                     .known_since
                     .iter()
                     .filter(|&&(_, since)| since >= leg.arrival_time())
                     .map(|&(target, _)| target)
                     .collect();
-                let check = check_leg(&pilot, &orbits, leg, (&here, &pad), &later).map(|seen| LegCheck {
+                let check = check_leg(air, leg, (&here, &pad), &later).map(|seen| LegCheck {
                     vehicle,
                     leg: index,
                     ..seen
@@ -167,8 +167,7 @@ impl Plan {
                 let joined = (leg.start_time - time).abs() < 1e-9
                     && leg.loiter.map(|loiter| loiter.circle) == planned.route.get(index).copied();
                 verification.judge(vehicle, index, check, joined, tolerances);
-                let left = leg.loiter.and_then(|loiter| Some(orbits.get(loiter.circle)?.exit(loiter.entry)));
-                here = left.unwrap_or(pad);
+                here = air.exit(leg).unwrap_or(pad);
                 time = leg.end_time();
             }
             let home = usize::from(!planned.route.is_empty() && planned.lost_at.is_none());
@@ -194,17 +193,16 @@ impl Plan {
 
 /// What an independent integration of one leg's controls shows; `None` if its arrays make no trajectory.
 fn check_leg(
-    pilot: &Pilot,
-    orbits: &[Orbit],
+    air: &Air,
     leg: &Leg,
     (start, pad): (&Motion, &Motion),
     not_yet_known: &[usize],
 ) -> Option<LegCheck> {
     let goal = match leg.loiter {
-        Some(loiter) => orbits.get(loiter.circle)?.at(loiter.entry),
+        Some(loiter) => air.orbits.get(loiter.circle)?.at(loiter.entry),
         None => *pad,
     };
-    let seen = pilot.examine_without(&leg.transition, start, not_yet_known)?;
+    let seen = air.pilot.examine_without(&leg.transition, start, not_yet_known)?;
     Some(LegCheck {
         vehicle: 0,
         leg: 0,

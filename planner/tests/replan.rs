@@ -25,7 +25,8 @@ fn stands(replanner: &Replanner) {
 
 /// Every moment before `time` is flown as it was planned before.
 fn same_past(before: &Plan, after: &Plan, was: &Mission, is: &Mission, time: f64) {
-    for vehicle in 0..before.vehicles.len() {
+    // Of a lost vehicle only the legs that it completed are kept.
+    for vehicle in (0..before.vehicles.len()).filter(|&i| after.vehicles[i].lost_at.is_none()) {
         for i in 0..20 {
             let t = time * f64::from(i) / 20.0;
             let [a, b] = [before.sample(was, vehicle, t), after.sample(is, vehicle, t)].map(Option::unwrap);
@@ -131,7 +132,9 @@ fn a_vehicle_gives_way_by_further_turns_or_a_later_start() {
     let mut follower = plan.vehicles[leader].clone();
     follower.legs.iter_mut().for_each(|leg| leg.start_time += gap);
     let legs = &mut plan.vehicles[leader].legs;
-    legs[1].loiter.as_mut().unwrap().duration += 2.0 * turn;
+    let loiter = legs[1].loiter.as_mut().unwrap();
+    loiter.length *= 1.0 + 2.0 * turn / loiter.duration;
+    loiter.duration += 2.0 * turn;
     legs[2..].iter_mut().for_each(|leg| leg.start_time += 2.0 * turn);
     let first = legs[0].clone();
     // What the follower would have circled is circled by nobody now.
@@ -186,12 +189,67 @@ fn a_new_target_on_the_way_is_flown_around() {
 }
 
 #[test]
+fn legs_are_planned_for_the_wind_that_blows_when_they_start() {
+    for time in [0.0, 1.0, 4.0, 7.5] {
+        let mut replanner = replanner();
+        let (before, was) = (replanner.plan().clone(), replanner.mission().clone());
+        let update = replanner.apply(time, &Event::WindChanges([5.0, -2.0])).unwrap();
+        assert_eq!(update.vehicles, [0, 1], "{time}");
+        stands(&replanner);
+        same_past(&before, replanner.plan(), &was, replanner.mission(), time);
+        for (old, new) in before.vehicles.iter().zip(&replanner.plan().vehicles) {
+            assert_eq!(old.route, new.route);
+            for (old, new) in old.legs.iter().zip(&new.legs) {
+                let same = old.transition.controls == new.transition.controls;
+                assert_eq!(same, old.start_time <= time);
+            }
+        }
+        // The legs of before cannot be flown as they are in the wind of now.
+        let mut forgetful = replanner.plan().clone();
+        forgetful.earlier_winds.clear();
+        assert!(!forgetful.verify(replanner.mission(), &Tolerances::default()).passed());
+        // What happens next, while legs of before are still being flown.
+        for event in [
+            Event::TargetAppears(Target::at([4.0, 24.0])),
+            Event::VehicleFails(0),
+            Event::TargetMoves(3, [-20.0, 25.0]),
+            Event::WindChanges([-3.0, 3.0]),
+        ] {
+            let (before, was) = (replanner.plan().clone(), replanner.mission().clone());
+            replanner.apply(time + 0.2, &event).unwrap();
+            stands(&replanner);
+            same_past(&before, replanner.plan(), &was, replanner.mission(), time + 0.2);
+        }
+    }
+}
+
+#[test]
+fn a_vehicle_that_starts_when_the_wind_changes_is_planned_for_the_new_wind() {
+    let mut spare = mission();
+    (spare.fleet.vehicles, spare.targets) = (2, vec![Target::at([14.0, 3.0])]);
+    let plan = plan(&spare, &Options::default()).unwrap();
+    let idle = plan.vehicles.iter().position(|vehicle| vehicle.legs.is_empty()).unwrap();
+    let mut replanner = Replanner::new(spare, plan).unwrap();
+    replanner.apply(1.0, &Event::WindChanges([4.0, 4.0])).unwrap();
+    replanner.apply(1.0, &Event::TargetAppears(Target::at([-40.0, -30.0]))).unwrap();
+    assert!(!replanner.plan().vehicles[idle].legs.is_empty());
+    stands(&replanner);
+}
+
+#[test]
 fn nonsense_is_refused_and_changes_nothing() {
     let mut replanner = replanner();
     let before = format!("{:?}", replanner.plan());
     let nowhere = Event::TargetAppears(Target::at([f64::NAN, 0.0]));
-    for event in [Event::TargetVanishes(4), Event::TargetMoves(9, [0.0; 2]), Event::VehicleFails(2), nowhere]
-    {
+    let (storm, no_wind) = (Event::WindChanges([30.0, 0.0]), Event::WindChanges([f64::NAN, 0.0]));
+    for event in [
+        Event::TargetVanishes(4),
+        Event::TargetMoves(9, [0.0; 2]),
+        Event::VehicleFails(2),
+        nowhere,
+        storm,
+        no_wind,
+    ] {
         assert!(matches!(replanner.apply(1.0, &event), Err(Error::Mission { .. })), "{event:?}");
         assert_eq!(before, format!("{:?}", replanner.plan()));
     }

@@ -96,8 +96,8 @@ fn waits(plan: &Plan, vehicle: usize, [from, to]: [f64; 2]) -> Vec<Wait> {
 
 /// Time for one full turn of a leg's loiter (s).
 fn turn(plan: &Plan, leg: &Leg) -> Option<f64> {
-    let circle = plan.circles.get(leg.loiter?.circle)?;
-    Some(TAU * circle.radius / circle.speed)
+    let loiter = leg.loiter?;
+    Some(TAU * plan.circles.get(loiter.circle)?.radius * loiter.duration / loiter.length)
 }
 
 impl Wait {
@@ -125,11 +125,10 @@ impl Wait {
 
     fn apply(&self, plan: &mut Plan) {
         let from = self.leg.map_or(0, |leg| leg + 1);
-        let circles = &plan.circles;
         let legs = &mut plan.vehicles[self.vehicle].legs;
         if let Some(loiter) = self.leg.and_then(|leg| legs[leg].loiter.as_mut()) {
+            loiter.length += self.delay * loiter.length / loiter.duration;
             loiter.duration += self.delay;
-            loiter.length += self.delay * circles[loiter.circle].speed;
         }
         for leg in &mut legs[from..] {
             leg.start_time += self.delay;

@@ -6,22 +6,23 @@
 //! | who takes a target over, and where in its route | `insertion.rs` |
 //! | the legs of a changed route: those that stay are kept, the others solved | `refly.rs` |
 //! | vehicles that would come too close wait for each other | `give_way.rs` |
+//! | the winds that flights meet | `skies.rs` |
 
 mod give_way;
 mod insertion;
 mod refly;
 mod settled;
+mod skies;
 
+use crate::airs::Airs;
 use crate::circles::orbits;
 use crate::error::{Error, Problem};
-use crate::legs::Airspace;
 use crate::mission::{Mission, Target};
-use crate::options::{Options, Watch};
 use crate::plan::{Approach, Plan};
-use crate::planning::{calibrated, envelope};
+use crate::planning::{calibrated, for_all};
 use crate::time_model::TimeModel;
-use crate::transition::Pilot;
 use settled::Settled;
+use skies::Skies;
 
 /// Something that happens while the team flies. Targets and vehicles are numbered from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +39,9 @@ pub enum Event {
     VehicleFails(usize),
     /// A vehicle that has not flown yet may (again) be used.
     VehicleReturns(usize),
+    /// The steady wind is another one: towards east, north (m/s). Legs that have been started are flown to their ends as they were
+    /// planned, later ones are planned for the new wind, in the same order and from the same entries where they can be.
+    WindChanges([f64; 2]),
 }
 
 /// What an event has changed.
@@ -83,10 +87,12 @@ impl Replanner {
         }
         let usable = vec![true; plan.vehicles.len()];
         let model = {
-            let orbits = orbits(&mission).map_err(of_loiter)?;
-            let airspace = airspace(&mission, &orbits);
+            let airs = Airs::new(&plan, &mission);
+            flyable(&airs)?;
+            let skies = Skies::new(&airs);
+            let airspace = skies.now();
             let flown = plan.vehicles.iter();
-            calibrated(&airspace, flown.map(|flown| (flown.pad, &flown.route[..], &flown.legs[..])))
+            calibrated(airspace, flown.map(|flown| (flown.pad, &flown.route[..], &flown.legs[..])))
         };
         Ok(Self { mission, plan, model, usable, waiting: Vec::new() })
     }
@@ -110,7 +116,8 @@ impl Replanner {
     /// [`Error::Leg`] if no way could be found to a target.
     ///
     /// # Complexity
-    /// Mostly the optimal control problems of the changed legs: two for a target that appears, one for one that vanishes.
+    /// Mostly the optimal control problems of the changed legs: two for a target that appears, one for one that vanishes, those of all later legs for a
+    /// new wind.
     pub fn apply(&mut self, time: f64, event: &Event) -> Result<Update, Error> {
         let mut next = self.clone();
         let changes = next.take_in(time, event)?;
@@ -172,6 +179,13 @@ impl Replanner {
                 self.usable[vehicle] = true;
                 changes.relieved_by = Some(vehicle);
             }
+            Event::WindChanges(wind) => {
+                let earlier = std::mem::replace(&mut self.mission.environment.wind, wind);
+                let latest = self.plan.earlier_winds.last().map_or(time, |&(until, _)| time.max(until));
+                self.plan.earlier_winds.push((latest, earlier));
+                self.model = self.model.in_wind(wind.into());
+                changes.wind = true;
+            }
         }
         for &target in &changes.keep_outs {
             self.plan.known_since.retain(|&(known, _)| known != target);
@@ -197,34 +211,42 @@ impl Replanner {
 
     /// Finds new routes and flies what has changed.
     fn refly(&mut self, time: f64, changes: Changes) -> Result<Update, Error> {
-        let orbits = orbits(&self.mission).map_err(of_loiter)?;
-        let airspace = airspace(&self.mission, &orbits);
+        let airs = Airs::new(&self.plan, &self.mission);
+        flyable(&airs)?;
+        let skies = Skies::new(&airs);
+        let airspace = skies.now();
         let mut team: Vec<Settled> = (0..self.plan.vehicles.len())
-            .map(|vehicle| Settled::at(&airspace, &self.plan.vehicles[vehicle], time, &changes))
+            .map(|vehicle| Settled::at(&skies, &self.plan.vehicles[vehicle], time, &changes))
             .collect();
         for settled in &mut team {
             settled.open.retain(|circle| !changes.gone.contains(circle));
         }
         let mut waiting = Vec::new();
         for &target in &changes.wanted {
-            let place = insertion::cheapest(&airspace, &self.model, &self.plan, &team, &self.usable, target);
+            let place = insertion::cheapest(airspace, &self.model, &self.plan, &team, &self.usable, target);
             match place {
                 Some(place) => team[place.vehicle].open.insert(place.position, target),
                 None => waiting.push(target),
             }
         }
         if let Some(vehicle) = changes.relieved_by {
-            insertion::relieve(&airspace, &self.model, &self.plan, &mut team, vehicle);
+            insertion::relieve(airspace, &self.model, &self.plan, &mut team, vehicle);
         }
-        self.plan.circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
+        self.plan.circles = airspace.orbits.iter().map(|orbit| orbit.circle.clone()).collect();
+        let legs = for_all(team.into_iter().enumerate().collect(), |(vehicle, settled)| {
+            let planned = &self.plan.vehicles[vehicle];
+            match planned.lost_at {
+                Some(_) => Ok(None),
+                None => refly::fly(&skies, &self.model, vehicle, planned, settled, &changes),
+            }
+        })?;
         let mut vehicles = Vec::new();
-        for (vehicle, settled) in team.into_iter().enumerate() {
+        for (vehicle, legs) in legs.into_iter().enumerate() {
             let planned = &self.plan.vehicles[vehicle];
             if let Some(lost) = planned.lost_at {
                 vehicles.extend((lost == time).then_some(vehicle));
                 continue;
             }
-            let legs = refly::fly(&airspace, &self.model, vehicle, planned, settled, &changes)?;
             if let Some(legs) = legs {
                 let planned = &mut self.plan.vehicles[vehicle];
                 planned.route = legs.iter().filter_map(|leg| Some(leg.loiter?.circle)).collect();
@@ -264,18 +286,15 @@ struct Changes {
     keep_outs: Vec<usize>,
     /// A vehicle that can take targets from others.
     relieved_by: Option<usize>,
+    /// Whether later legs are flown in another wind.
+    wind: bool,
 }
 
-fn of_loiter(source: quad_dynamics::Error) -> Error {
-    Error::Mission { problems: vec![Problem::Loiter { target: 0, source }] }
-}
-
-fn airspace<'a>(mission: &'a Mission, orbits: &'a [crate::circles::Orbit]) -> Airspace<'a> {
-    Airspace {
-        mission,
-        orbits,
-        pilot: Pilot::new(mission, orbits),
-        envelope: envelope(mission, orbits),
-        watch: Watch::new(Options::default(), 0),
+/// Whether every circle can be flown in every wind: a vehicle may still be on a leg that was planned for an earlier one.
+fn flyable(airs: &Airs) -> Result<(), Error> {
+    for air in airs.iter().filter(|air| air.orbits.len() != air.mission.targets.len()) {
+        let of_loiter = |source| Error::Mission { problems: vec![Problem::Loiter { target: 0, source }] };
+        orbits(&air.mission).map_err(of_loiter)?;
     }
+    Ok(())
 }

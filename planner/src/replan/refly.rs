@@ -1,18 +1,17 @@
 //! The legs of a changed route.
 
-use super::Changes;
 use super::settled::{Settled, enters};
+use super::{Changes, Skies};
 use crate::entry;
 use crate::error::Error;
 use crate::legs::Airspace;
 use crate::plan::{Entry, Leg, Loiter, Transition, VehiclePlan};
 use crate::time_model::TimeModel;
-use crate::transition::hover;
 use quad_dynamics::Motion;
 
 /// Flies a vehicle's open circles from where it is settled; `None` if nothing changes.
 pub(super) fn fly(
-    airspace: &Airspace,
+    skies: &Skies,
     model: &TimeModel,
     vehicle: usize,
     planned: &VehiclePlan,
@@ -20,25 +19,29 @@ pub(super) fn fly(
     changes: &Changes,
 ) -> Result<Option<Vec<Leg>>, Error> {
     let gone = &changes.gone;
-    let keeps = !settled.open.iter().any(|circle| gone.contains(circle))
+    let keeps = !changes.wind
+        && !settled.open.iter().any(|circle| gone.contains(circle))
         && planned.route.ends_with(&settled.open)
         && settled.legs.len() + settled.open.len() == planned.route.len()
-        && (settled.legs.len()..planned.legs.len()).all(|leg| !enters(airspace, planned, leg, changes));
+        && (settled.legs.len()..planned.legs.len()).all(|leg| !enters(skies, planned, leg, changes));
     if settled.landed || keeps {
         return Ok(None);
     }
     let Settled { mut legs, broken_off, here, mut time, open, .. } = settled;
+    let now = skies.now();
     let taken_off = here.is_some();
     if open.is_empty() && !taken_off {
         return Ok(Some(Vec::new()));
     }
-    let mut here = here.unwrap_or_else(|| airspace.take_off(planned.pad, &open));
+    let mut here = here.unwrap_or_else(|| now.take_off(planned.pad, &open));
     let mut broken_off = broken_off;
-    let entries = entries(airspace, model, planned, (&here, &open), gone);
+    // A leg is planned for one wind: one that is broken off keeps its own.
+    let mut airspace = broken_off.as_ref().map_or(now, |&(start, _)| skies.at(start));
+    let entries = entries(now, model, planned, (&here, &open), gone);
     for (&circle, &entry) in open.iter().zip(&entries) {
         let orbit = &airspace.orbits[circle];
         let stays = broken_off.is_none() && !gone.contains(&circle);
-        let kept = stays.then(|| unchanged(airspace, planned, &here, (circle, entry), changes)).flatten();
+        let kept = stays.then(|| unchanged(skies, planned, &here, (circle, entry), changes)).flatten();
         let (transition, entry, candidates) = match kept {
             Some(leg) => (leg.transition.clone(), entry, leg.candidates.clone()),
             None => {
@@ -50,19 +53,20 @@ pub(super) fn fly(
             }
         };
         let loiter = Loiter { circle, entry, duration: orbit.circle.duration, length: orbit.loiter.length() };
-        let (start_time, transition) = joined(airspace, planned, &legs, broken_off.take(), time, transition);
+        let (start_time, transition) = joined(skies, planned, &legs, broken_off.take(), time, transition);
         legs.push(Leg { start_time, transition, loiter: Some(loiter), candidates });
         time = legs[legs.len() - 1].end_time();
         here = orbit.exit(entry);
+        airspace = now;
     }
     let kept = planned.legs.last().filter(|leg| {
-        let from = planned.legs.len().checked_sub(2).and_then(|before| planned.legs[before].loiter);
-        let same = from.is_some_and(|loiter| {
-            !gone.contains(&loiter.circle) && airspace.orbits[loiter.circle].exit(loiter.entry) == here
-        });
-        same && leg.loiter.is_none()
+        let from = planned.legs.len().checked_sub(2).map(|before| &planned.legs[before]);
+        let stays = |from: &&Leg| from.loiter.is_some_and(|loiter| !gone.contains(&loiter.circle));
+        let same = from.filter(stays).is_some_and(|from| skies.start(planned, Some(from), time) == here);
+        same && !changes.wind
+            && leg.loiter.is_none()
             && broken_off.is_none()
-            && !enters(airspace, planned, planned.legs.len() - 1, changes)
+            && !enters(skies, planned, planned.legs.len() - 1, changes)
     });
     let (transition, candidates) = match kept {
         Some(leg) => (Some(leg.transition.clone()), leg.candidates.clone()),
@@ -71,7 +75,7 @@ pub(super) fn fly(
     let Some(transition) = transition else {
         return Err(Error::Leg { vehicle, leg: legs.len(), circle: None, candidates });
     };
-    let (start_time, transition) = joined(airspace, planned, &legs, broken_off, time, transition);
+    let (start_time, transition) = joined(skies, planned, &legs, broken_off, time, transition);
     legs.push(Leg { start_time, transition, loiter: None, candidates });
     Ok(Some(legs))
 }
@@ -112,7 +116,7 @@ fn entries(
 
 /// The planned leg from this very motion to this entry, unless it now enters a safe distance.
 fn unchanged<'a>(
-    airspace: &Airspace,
+    skies: &Skies,
     planned: &'a VehiclePlan,
     here: &Motion,
     (circle, entry): (usize, Entry),
@@ -122,17 +126,18 @@ fn unchanged<'a>(
         .legs
         .iter()
         .position(|leg| leg.loiter.is_some_and(|loiter| loiter.circle == circle && loiter.entry == entry))?;
-    let start = match index.checked_sub(1).and_then(|before| planned.legs[before].loiter) {
-        Some(loiter) if changes.gone.contains(&loiter.circle) => return None,
-        Some(loiter) => airspace.orbits[loiter.circle].exit(loiter.entry),
-        None => hover(airspace.mission, planned.pad, planned.heading),
-    };
-    (start == *here && !enters(airspace, planned, index, changes)).then(|| &planned.legs[index])
+    let before = index.checked_sub(1).map(|before| &planned.legs[before]);
+    let from = before.and_then(|leg| leg.loiter);
+    if changes.wind || from.is_some_and(|loiter| changes.gone.contains(&loiter.circle)) {
+        return None;
+    }
+    let start = skies.start(planned, before, planned.legs[index].start_time);
+    (start == *here && !enters(skies, planned, index, changes)).then(|| &planned.legs[index])
 }
 
 /// A leg's start and its transition, with what was flown before it was broken off in front.
 fn joined(
-    airspace: &Airspace,
+    skies: &Skies,
     planned: &VehiclePlan,
     legs: &[Leg],
     broken_off: Option<(f64, Transition)>,
@@ -149,11 +154,8 @@ fn joined(
     (whole.status, whole.miss) = (rest.status, rest.miss);
     whole.primal_residual = rest.primal_residual;
     whole.dual_residual = rest.dual_residual;
-    let start = match legs.last().and_then(|leg| leg.loiter) {
-        Some(loiter) => airspace.orbits[loiter.circle].exit(loiter.entry),
-        None => hover(airspace.mission, planned.pad, planned.heading),
-    };
-    if let Some(seen) = airspace.pilot.examine(&whole, &start) {
+    let start = skies.start(planned, legs.last(), start_time);
+    if let Some(seen) = skies.at(start_time).pilot.examine(&whole, &start) {
         (whole.length, whole.max_speed, whole.max_tilt) = (seen.length, seen.max_speed, seen.max_tilt);
     }
     (start_time, whole)

@@ -1,9 +1,7 @@
 //! What of a vehicle's flight is settled at a moment.
 
-use super::{Changes, Replanner};
-use crate::legs::Airspace;
+use super::{Changes, Replanner, Skies};
 use crate::plan::{Leg, Transition, VehiclePlan};
-use crate::transition::hover;
 use quad_dynamics::Motion;
 
 /// The part of a flight that stays, and what follows it.
@@ -24,7 +22,7 @@ pub(super) struct Settled {
 
 impl Settled {
     /// The flight of a vehicle as it is settled at `time`.
-    pub(super) fn at(airspace: &Airspace, planned: &VehiclePlan, time: f64, changes: &Changes) -> Self {
+    pub(super) fn at(skies: &Skies, planned: &VehiclePlan, time: f64, changes: &Changes) -> Self {
         let VehiclePlan { legs, route, .. } = planned;
         let untouched = |time: f64| Self {
             legs: Vec::new(),
@@ -34,7 +32,7 @@ impl Settled {
             open: route.clone(),
             landed: false,
         };
-        let Some(first) = legs.first() else { return untouched(time) };
+        let Some(first) = legs.first() else { return untouched(skies.airs.from(time)) };
         if first.start_time > time {
             return untouched(first.start_time);
         }
@@ -43,17 +41,19 @@ impl Settled {
             return Self { legs: legs.clone(), open: Vec::new(), landed: true, ..untouched(time) };
         };
         let leg = &legs[k];
+        let air = skies.airs.at(leg.start_time);
         let circle = leg.loiter.map(|loiter| loiter.circle);
         let in_transition = time < leg.arrival_time();
         let must_turn = || {
-            circle.is_some_and(|circle| changes.gone.contains(&circle))
-                || enters(airspace, planned, k, changes)
+            circle.is_some_and(|circle| changes.gone.contains(&circle)) || enters(skies, planned, k, changes)
         };
-        if in_transition && (circle.is_none() || must_turn()) {
+        // In a new wind the way home is flown to its end.
+        let may_turn = circle.is_none() && !changes.wind;
+        if in_transition && (may_turn || must_turn()) {
             let earliest = time + Replanner::REACTION - leg.start_time;
             let knot = leg.transition.knots.partition_point(|&knot| knot < earliest);
             if knot + 1 < leg.transition.knots.len()
-                && let Some(path) = airspace.pilot.path(&leg.transition)
+                && let Some(path) = air.pilot.path(&leg.transition)
             {
                 let here = path(leg.transition.knots[knot]);
                 return Self {
@@ -66,11 +66,10 @@ impl Settled {
                 };
             }
         }
-        let here = leg.loiter.map(|loiter| airspace.orbits[loiter.circle].exit(loiter.entry));
         Self {
             legs: legs[..=k].to_vec(),
             time: leg.end_time(),
-            here,
+            here: air.exit(leg),
             open: route[(k + 1).min(route.len())..].to_vec(),
             landed: circle.is_none(),
             broken_off: None,
@@ -79,20 +78,19 @@ impl Settled {
 }
 
 /// Whether a leg enters a safe distance that was not there when it was planned.
-pub(super) fn enters(airspace: &Airspace, planned: &VehiclePlan, leg: usize, changes: &Changes) -> bool {
-    let transition = &planned.legs[leg].transition;
+pub(super) fn enters(skies: &Skies, planned: &VehiclePlan, leg: usize, changes: &Changes) -> bool {
+    let Leg { transition, start_time, .. } = &planned.legs[leg];
+    let air = skies.airs.at(*start_time);
     let comes_near = |&target: &usize| {
-        let mission = airspace.mission;
+        let mission = &air.mission;
         least_distance(transition, mission.targets[target].position) < mission.safe_distance(target)
     };
     if !changes.keep_outs.iter().any(comes_near) {
         return false;
     }
-    let start = match leg.checked_sub(1).and_then(|before| planned.legs[before].loiter) {
-        Some(loiter) => airspace.orbits[loiter.circle].exit(loiter.entry),
-        None => hover(airspace.mission, planned.pad, planned.heading),
-    };
-    let seen = airspace.pilot.examine(transition, &start);
+    let before = leg.checked_sub(1).map(|before| &planned.legs[before]);
+    let start = skies.start(planned, before, *start_time);
+    let seen = air.pilot.examine(transition, &start);
     // What the plan was made with may have been grazed.
     seen.is_some_and(|seen| seen.clearance < -0.02)
 }
