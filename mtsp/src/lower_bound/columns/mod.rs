@@ -64,7 +64,8 @@ const IDLE: f64 = 1e-6;
 /// Those of [`check`](crate::check()) for the routes given.
 ///
 /// # Complexity
-/// Exponential at worst; some 10 s for 100 targets and 8 vehicles, minutes with cuts. Where routes have more than some twenty targets it gives up early.
+/// Exponential at worst; some 10 s for 100 targets and 8 vehicles, minutes with cuts. Where routes have
+/// dozens of targets, single pricings take seconds.
 ///
 /// # Examples
 /// ```
@@ -97,8 +98,8 @@ pub fn columns<M: Metric>(
             let limit = low + if max_cuts == 0 { 0.75 } else { 0.5 } * (high - low);
             match cover.refutes(limit, max_cuts, proceed) {
                 Outcome::Refuted => low = limit,
-                Outcome::Covered => high = limit,
-                Outcome::Open => break,
+                Outcome::Standing => high = limit,
+                Outcome::Stopped => return Ok(low),
             }
         }
         if max_cuts > 0 || makespan - low <= PRECISION * makespan {
@@ -163,10 +164,10 @@ impl Graph {
 enum Outcome {
     /// There is no fractional cover with this limit: proven.
     Refuted,
-    /// There is one.
-    Covered,
-    /// Neither was found.
-    Open,
+    /// There is one, or neither was found with the effort that a limit is given.
+    Standing,
+    /// The caller wants no more.
+    Stopped,
 }
 
 /// The routes known so far, with their lengths, and cuts; limits share them.
@@ -195,20 +196,20 @@ impl<'a> Cover<'a> {
         let vehicles = self.graph.vehicles as f64;
         let (mut centre, mut smoothing, mut effort) = (None::<Prices>, SMOOTHING, Effort::Quick);
         for _ in 0..ROUNDS {
-            let Some((prices, shares)) = self.prices(limit) else { return Outcome::Open };
+            let Some((prices, shares)) = self.prices(limit) else { return Outcome::Standing };
             if prices.sum() <= vehicles {
                 if !self.cut(limit, &prices, &shares, max_cuts) {
-                    return Outcome::Covered;
+                    return Outcome::Standing;
                 }
                 (centre, smoothing, effort) = (None, SMOOTHING, Effort::Quick);
                 continue;
             }
             let mixed = centre.as_ref().unwrap_or(&prices).mixed(smoothing, &prices);
             if !proceed() {
-                return Outcome::Open;
+                return Outcome::Stopped;
             }
             let Some(found) = price(self.graph, &mixed, &self.cuts, limit, effort) else {
-                return Outcome::Open;
+                return Outcome::Standing;
             };
             let mixed = mixed.divided_by(found.most);
             if effort == Effort::Exact && mixed.sum() > vehicles * (1.0 + MARGIN) {
@@ -218,14 +219,14 @@ impl<'a> Cover<'a> {
                 match effort {
                     Effort::Quick => effort = Effort::Exact,
                     // Nothing collects too much even at prices that are hardly mixed: the program is solved.
-                    Effort::Exact if smoothing < 0.05 => return Outcome::Open,
+                    Effort::Exact if smoothing < 0.05 => return Outcome::Standing,
                     Effort::Exact => smoothing *= 0.5,
                 }
             }
             self.add(found.routes);
             centre = Some(mixed);
         }
-        Outcome::Open
+        Outcome::Standing
     }
 
     fn within(&self, limit: f64) -> Vec<&[usize]> {
