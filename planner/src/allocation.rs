@@ -36,21 +36,38 @@ pub(crate) fn routes(
     Ok(solution.routes.into_iter().map(to_circles).collect())
 }
 
-/// The fewest vehicles found whose routes all cost at most `share` of the longest given route; `None` if there are none.
-pub(crate) fn fewest_vehicles(
+/// `share` of the cost of the longest route.
+pub(crate) fn share_of_longest(
     mission: &Mission,
     orbits: &[Orbit],
     envelope: &Envelope,
     routes: &[&[usize]],
     share: f64,
-) -> Option<usize> {
+) -> Option<f64> {
     let (legs, service) = legs(mission, orbits, envelope);
     let problem = Problem::new(&legs, orbits.len()).ok()?.with_service(service).ok()?;
     let nodes = |route: &&[usize]| route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
     let costs = routes.iter().map(nodes).map(|route| problem.route_length(0, &route));
-    let limit = share * costs.fold(0.0, f64::max);
+    Some(share * costs.fold(0.0, f64::max))
+}
+
+/// Routes that cost at most `limit`, as few as were found, with their costs; `None` if there are none.
+pub(crate) fn fewest_routes(
+    mission: &Mission,
+    orbits: &[Orbit],
+    envelope: &Envelope,
+    limit: f64,
+) -> Option<Vec<(Vec<usize>, f64)>> {
+    let (legs, service) = legs(mission, orbits, envelope);
+    let problem = Problem::new(&legs, orbits.len()).ok()?.with_service(service).ok()?;
     let problem = problem.with_limits(vec![limit; orbits.len()]).ok()?;
-    mtsp::least_fleet(&problem, &search(mission, orbits.len())).ok().map(|found| found.vehicles)
+    let found = mtsp::least_fleet(&problem, &search(mission, orbits.len())).ok()?;
+    let routes = found.solution.routes.into_iter().take(found.vehicles);
+    let priced = |route: Vec<usize>| {
+        let cost = problem.route_length(0, &route);
+        (route.into_iter().map(|node| node - 1).collect(), cost)
+    };
+    Some(routes.map(priced).collect())
 }
 
 /// What legs between depot (node 0) and circles (node `i + 1` for circle `i`) and what loiters cost.

@@ -73,7 +73,9 @@ pub enum Problem {
         range: &'static str,
     },
     /// A plan cannot follow events.
-    #[error("the plan cannot follow events: plan the mission itself, with merge_within = 0")]
+    #[error(
+        "the plan cannot follow events: plan the mission itself, with merge_within = 0 and one flight for each vehicle"
+    )]
     NotReplannable,
     /// An event names something that there is not.
     #[error("there is no {what} {index}: number them from 0, as the mission does")]

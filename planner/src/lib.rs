@@ -9,6 +9,7 @@
 //! | check | all that is wrong with the mission, at once | `check.rs` |
 //! | circles | close targets merged; the fastest loiter within the limits | `circles.rs` |
 //! | routes | k-means and Christofides, or optimised routes | `allocation.rs` |
+//! | sorties | too long for the batteries? shorter flights, a battery swapped in between | `sorties.rs` |
 //! | entries | sampled angles in both directions, bounded from below | `entry.rs`, `bound/` |
 //! | legs | the paper's Algorithm 1: the fastest transition over all entries | `legs.rs`, `race.rs`, `transition/` |
 //! | whole routes | entries that are best for a route, not for a leg | `whole_route.rs`, `time_model.rs` |
@@ -67,6 +68,7 @@ mod replan;
 mod round;
 mod sample;
 mod separation;
+mod sorties;
 mod time_model;
 mod transition;
 mod verify;

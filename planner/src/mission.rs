@@ -23,6 +23,9 @@ pub struct Mission {
     pub loiter: LoiterSettings,
     /// How vehicles fly between circles.
     pub transition: TransitionSettings,
+    /// Time to swap a vehicle's battery on its pad (s); `None` if each flies once. Where endurance or battery are too small for one
+    /// flight each, vehicles then fly several sorties.
+    pub swap_time: Option<f64>,
     /// What they fly through.
     pub environment: Environment,
     /// What must be circled.
@@ -224,6 +227,7 @@ impl Mission {
             fleet: Fleet { vehicles, vehicle, separation: 3.0, endurance: f64::INFINITY },
             loiter: LoiterSettings::default(),
             transition: TransitionSettings::default(),
+            swap_time: None,
             environment: Environment::default(),
             targets,
             merge_within: 0.0,

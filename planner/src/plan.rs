@@ -11,7 +11,8 @@ use quad_dynamics::{Direction, Limit};
 pub struct Plan {
     /// The circles to fly, after close targets have been merged.
     pub circles: Vec<Circle>,
-    /// What each vehicle does; a vehicle without a route stays on its pad.
+    /// What each vehicle does; a vehicle without a route stays on its pad. Further sorties of vehicles follow
+    /// ([`VehiclePlan::vehicle`], [`Mission::swap_time`](crate::Mission)).
     pub vehicles: Vec<VehiclePlan>,
     /// How good the plan can be said to be.
     pub certificate: Certificate,
@@ -50,9 +51,11 @@ pub struct Circle {
     pub duration: f64,
 }
 
-/// What one vehicle does.
+/// What one vehicle does from take-off to landing.
 #[derive(Debug, Clone)]
 pub struct VehiclePlan {
+    /// The vehicle: its place in [`Plan::vehicles`], or that of the vehicle whose further sortie this is.
+    pub vehicle: usize,
     /// Where it hovers before the first and after the last leg (m, east-north-up).
     pub pad: [f64; 3],
     /// Where its nose points when it takes off (rad, from east, counter-clockwise): towards its first circle.
@@ -249,6 +252,11 @@ pub enum Warning {
         /// of this plan, so an estimate.
         needed: usize,
     },
+    /// One flight each is too long for endurance or battery: batteries are swapped on the pads.
+    Sorties {
+        /// Flights, by as many vehicles as there are.
+        flights: usize,
+    },
     /// There are more vehicles than routes.
     Spare {
         /// How many vehicles stay at the depot.
@@ -310,6 +318,14 @@ impl Certificate {
     #[must_use]
     pub fn total_gap(&self) -> f64 {
         self.total / self.total_lower_bound - 1.0
+    }
+}
+
+impl Plan {
+    /// Flights from take-off to landing: with one sortie each the number of vehicles that fly.
+    #[must_use]
+    pub fn flights(&self) -> usize {
+        self.vehicles.iter().filter(|planned| !planned.legs.is_empty()).count()
     }
 }
 

@@ -8,6 +8,7 @@ use crate::mission::{Mission, Model, Pipeline};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
 use crate::separation::{closest_pair, in_the_air, start_delays};
+use crate::sorties::{self, Flight, share_in_reach};
 use crate::time_model::TimeModel;
 use crate::transition::Pilot;
 use crate::whole_route::Flown;
@@ -33,33 +34,66 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     let pads = mission.pads();
     let routes = allocation::routes(mission, &orbits, &envelope)?;
     let routes = allocation::to_pads(routes, &pads, &orbits, mission.depot);
-    let mut airspace = Airspace {
-        mission,
-        orbits: &orbits,
-        pilot: Pilot::new(mission, &orbits),
-        envelope,
-        watch: Watch::new(*options, 0),
+    let flights = sorties::one_each(&pads, routes);
+    let airspace = |flights: &[Flight]| {
+        let mut airspace = Airspace {
+            mission,
+            orbits: &orbits,
+            pilot: Pilot::new(mission, &orbits),
+            envelope,
+            watch: Watch::new(*options, 0),
+        };
+        let total = flights.iter().map(|flight| airspace.n_candidates(flight.route.len())).sum();
+        airspace.watch = Watch::new(*options, total);
+        airspace
     };
-    let total = routes.iter().map(|route| airspace.n_candidates(route.len())).sum();
-    airspace.watch = Watch::new(*options, total);
-    let legs = fly_all(&airspace, &pads, &routes)?;
+    let mut plan = planned(&airspace(&flights), flights)?;
+    let mut share = share_in_reach(&plan);
+    if share < 1.0 && mission.swap_time.is_some() {
+        let routes: Vec<&[usize]> = plan.vehicles.iter().map(|planned| &planned.route[..]).collect();
+        let longest = allocation::share_of_longest(mission, &orbits, &envelope, &routes, 1.0);
+        let mut limit = longest.unwrap_or(0.0);
+        // Solved flights scatter around the routes' costs: a limit that was too loose is tightened.
+        for _ in 0..MOST_LIMITS {
+            limit *= share;
+            let Some(flights) = sorties::share_out(mission, &orbits, &envelope, limit) else { break };
+            plan = planned(&airspace(&flights), flights)?;
+            share = share_in_reach(&plan);
+            if share >= 1.0 {
+                break;
+            }
+        }
+        plan.warnings.push(Warning::Sorties { flights: plan.flights() });
+    }
+    if share < 1.0 {
+        plan.warnings.extend(more_vehicles(&plan, mission, &orbits, &envelope, share));
+    }
+    Ok(plan)
+}
+
+/// Limits on routes that are tried until every flight keeps endurance and battery.
+const MOST_LIMITS: usize = 4;
+
+/// The plan in which given flights are flown.
+fn planned(airspace: &Airspace, flights: Vec<Flight>) -> Result<Plan, Error> {
+    let Airspace { mission, orbits, ref envelope, .. } = *airspace;
+    let legs = fly_all(airspace, &flights)?;
     let found_leg_by_leg: Vec<f64> = legs.iter().map(|legs| legs.last().map_or(0.0, Leg::end_time)).collect();
     let legs = match mission.pipeline {
         Pipeline::Paper => legs,
-        Pipeline::Optimised => reconsider_all(&airspace, &pads, &routes, legs)?,
+        Pipeline::Optimised => reconsider_all(airspace, &flights, legs)?,
     };
-    let vehicles: Vec<VehiclePlan> = pads
+    let vehicles: Vec<VehiclePlan> = flights
         .into_iter()
-        .zip(routes)
         .zip(legs)
         .zip(found_leg_by_leg)
-        .map(|(((pad, route), legs), leg_by_leg)| {
+        .map(|((Flight { vehicle, pad, route }, legs), leg_by_leg)| {
             let heading = airspace.heading(pad, &route);
-            VehiclePlan { pad, heading, route, legs, leg_by_leg, lost_at: None }
+            VehiclePlan { vehicle, pad, heading, route, legs, leg_by_leg, lost_at: None }
         })
         .collect();
     let circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
-    let certificate = certificate::certificate(mission, &orbits, &envelope, &vehicles)?;
+    let certificate = certificate::certificate(mission, orbits, envelope, &vehicles)?;
     let mut plan = Plan {
         circles,
         vehicles,
@@ -74,13 +108,14 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);
     plan.closest_approach = in_the_air(&plan, mission, |fleet| closest_pair(&fleet)).flatten();
     plan.warnings = warnings(&plan, mission);
-    plan.warnings.extend(more_vehicles(&plan, mission, &orbits, &envelope));
     Ok(plan)
 }
 
 /// Lets vehicles wait on their pads so that none comes too close to another in the air.
 fn delay_starts(plan: &mut Plan, mission: &Mission) {
-    let Some(delays) = in_the_air(plan, mission, |fleet| start_delays(&fleet, mission.fleet.separation))
+    let (before, swap_time) = (plan.flights_before(), mission.swap_time.unwrap_or(0.0));
+    let Some(delays) =
+        in_the_air(plan, mission, |fleet| start_delays(&fleet, mission.fleet.separation, &before, swap_time))
     else {
         return;
     };
@@ -107,23 +142,20 @@ pub(crate) fn envelope(mission: &Mission, orbits: &[Orbit]) -> Envelope {
 }
 
 /// The legs of every route, each leg by itself the fastest.
-fn fly_all(airspace: &Airspace, pads: &[[f64; 3]], routes: &[Vec<usize>]) -> Result<Vec<Vec<Leg>>, Error> {
-    for_all(routes.iter().enumerate().collect(), |(vehicle, route)| {
-        airspace.fly(vehicle, pads[vehicle], route)
-    })
+fn fly_all(airspace: &Airspace, flights: &[Flight]) -> Result<Vec<Vec<Leg>>, Error> {
+    for_all(flights.iter().collect(), |Flight { vehicle, pad, route }| airspace.fly(*vehicle, *pad, route))
 }
 
 /// The legs of every route with entries chosen for the route as a whole where that is faster.
 fn reconsider_all(
     airspace: &Airspace,
-    pads: &[[f64; 3]],
-    routes: &[Vec<usize>],
+    flights: &[Flight],
     legs: Vec<Vec<Leg>>,
 ) -> Result<Vec<Vec<Leg>>, Error> {
     let flown: Vec<Flown> = legs
         .into_iter()
-        .enumerate()
-        .map(|(vehicle, legs)| Flown { vehicle, pad: pads[vehicle], route: &routes[vehicle], legs })
+        .zip(flights)
+        .map(|(legs, Flight { vehicle, pad, route })| Flown { vehicle: *vehicle, pad: *pad, route, legs })
         .collect();
     let model = calibrated(airspace, flown.iter().map(|flown| (flown.pad, flown.route, &flown.legs[..])));
     for_all(flown, |flown| airspace.reconsider(flown, &model))
@@ -157,17 +189,16 @@ pub(crate) fn for_all<T: Send, R: Send>(
 }
 
 /// How many vehicles are needed where some fly longer than they can.
-fn more_vehicles(plan: &Plan, mission: &Mission, orbits: &[Orbit], envelope: &Envelope) -> Option<Warning> {
-    let shares = plan.warnings.iter().filter_map(|warning| match *warning {
-        Warning::Endurance { duration, endurance, .. } => Some(endurance / duration),
-        Warning::Battery { energy, usable, .. } => Some(usable / energy),
-        _ => None,
-    });
-    let share = shares.fold(1.0, f64::min);
+fn more_vehicles(
+    plan: &Plan,
+    mission: &Mission,
+    orbits: &[Orbit],
+    envelope: &Envelope,
+    share: f64,
+) -> Option<Warning> {
     let routes: Vec<&[usize]> = plan.vehicles.iter().map(|planned| &planned.route[..]).collect();
-    let needed = (share < 1.0)
-        .then(|| allocation::fewest_vehicles(mission, orbits, envelope, &routes, share))
-        .flatten()?;
+    let limit = allocation::share_of_longest(mission, orbits, envelope, &routes, share)?;
+    let needed = allocation::fewest_routes(mission, orbits, envelope, limit)?.len();
     // A longest route that is badly balanced may be too long although there are vehicles enough.
     Some(Warning::MoreVehicles { needed: needed.max(1) })
 }

@@ -104,15 +104,22 @@ pub(crate) fn closest_pair(fleet: &[Option<Airborne>]) -> Option<Approach> {
     closest
 }
 
-/// Start delays (s) with which every two vehicles stay `separation` (m) apart while both fly.
+/// Start delays (s) with which every two flights stay `separation` (m) apart while both are in the air, and each starts `swap_time` (s)
+/// or more after the one `before` it, if there is one.
 ///
 /// The longest flight starts at once; each shorter one waits the fewest [`DELAY_STEP`]s that keep it apart from all flights
-/// placed before it. There is always an end to the waiting: a vehicle on its pad counts for nothing.
-pub(crate) fn start_delays(fleet: &[Option<Airborne>], separation: f64) -> Vec<f64> {
+/// placed before it; further sorties come after all first ones. There is always an end to the waiting: a vehicle on its pad counts for nothing.
+pub(crate) fn start_delays(
+    fleet: &[Option<Airborne>],
+    separation: f64,
+    before: &[Option<usize>],
+    swap_time: f64,
+) -> Vec<f64> {
     let mut delays = vec![0.0; fleet.len()];
     let mut order: Vec<usize> = (0..fleet.len()).filter(|&i| fleet[i].is_some()).collect();
     let length = |i: usize| fleet[i].as_ref().map_or(0.0, |airborne| airborne.flight[1] - airborne.flight[0]);
-    order.sort_by(|&a, &b| length(b).total_cmp(&length(a)));
+    let sortie = |i: usize| std::iter::successors(before[i], |&earlier| before[earlier]).count();
+    order.sort_by(|&a, &b| sortie(a).cmp(&sortie(b)).then(length(b).total_cmp(&length(a))));
     for (place, &vehicle) in order.iter().enumerate() {
         let Some(flight) = &fleet[vehicle] else { continue };
         let apart = |delay: f64| {
@@ -122,7 +129,11 @@ pub(crate) fn start_delays(fleet: &[Option<Airborne>], separation: f64) -> Vec<f
                 })
             })
         };
-        let waits = (0u32..).map(|step| f64::from(step) * DELAY_STEP);
+        let landed = |earlier: usize| {
+            fleet[earlier].as_ref().map_or(0.0, |airborne| airborne.flight[1] + delays[earlier] + swap_time)
+        };
+        let earliest = before[vehicle].map_or(0.0, landed);
+        let waits = (0u32..).map(|step| earliest + f64::from(step) * DELAY_STEP);
         delays[vehicle] = waits.into_iter().find(|&delay| apart(delay)).unwrap_or(0.0);
     }
     delays
@@ -160,10 +171,10 @@ mod tests {
             Some(Airborne { position: Box::new(second), flight: [0.0, 9.0], top_speed: 10.0 }),
             Some(Airborne { position: Box::new(first), flight: [0.0, 10.0], top_speed: 10.0 }),
         ];
-        let delays = start_delays(&fleet, 3.0);
+        let delays = start_delays(&fleet, 3.0, &[None, None], 0.0);
         // Without a delay the crossings are half a second apart, 3.5 m; closing on each other halves the squares: 3.53 m.
         assert_eq!(delays, [0.0, 0.0]);
-        let delays = start_delays(&fleet, 5.0);
+        let delays = start_delays(&fleet, 5.0, &[None, None], 0.0);
         assert_eq!(delays[1], 0.0);
         // With the crossings dt apart the least distance is 10 dt / sqrt 2: at least 5 m from 0.707 s on.
         assert_eq!(delays[0], 1.25);

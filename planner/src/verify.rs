@@ -108,6 +108,14 @@ pub enum Failure {
         /// Where they come closest.
         approach: Approach,
     },
+    /// A vehicle takes off again before its battery can have been swapped.
+    #[error("flight {} of vehicle {} starts before its battery can have been swapped", flight + 1, vehicle + 1)]
+    Swap {
+        /// The vehicle, from 0.
+        vehicle: usize,
+        /// Its place in [`Plan::vehicles`].
+        flight: usize,
+    },
     /// A value found is below its lower bound: one of the two is wrong.
     #[error("the certificate contradicts itself: {value} s found below a lower bound of {lower_bound} s")]
     Certificate {
@@ -142,7 +150,7 @@ impl Plan {
     /// Every transition's controls are integrated again by the adaptive integrator, from the state in which the vehicle
     /// really is: the loiter state (or hover) computed afresh from mission and entry. The end is compared with the next such
     /// state; bounds, heights and safe distances (of the targets known at that time) are looked at between knots too, each leg in the wind that it was planned for; every target must be circled exactly once;
-    /// vehicles must keep their separation at every moment in the air.
+    /// vehicles must keep their separation at every moment in the air, and batteries be swapped between sorties.
     #[must_use]
     pub fn verify(&self, mission: &Mission, tolerances: &Tolerances) -> Verification {
         let mut verification = Verification::default();
@@ -177,6 +185,7 @@ impl Plan {
             }
         }
         verification.count_targets(self, mission);
+        verification.judge_swaps(self, mission);
         let approach = in_the_air(self, mission, |fleet| closest_pair(&fleet)).flatten();
         let least = mission.fleet.separation - 2.0 * RESOLUTION;
         let close = approach.filter(|approach| approach.distance < least);
@@ -242,6 +251,17 @@ impl Verification {
         let clear = clearance >= -tolerances.bound;
         if !clear {
             self.failures.push(Failure::Clearance { vehicle, leg, clearance });
+        }
+    }
+
+    fn judge_swaps(&mut self, plan: &Plan, mission: &Mission) {
+        for (flight, before) in plan.flights_before().into_iter().enumerate() {
+            let (Some(before), planned) = (before, &plan.vehicles[flight]) else { continue };
+            let earliest = plan.vehicles[before].end_time() + mission.swap_time.unwrap_or(0.0);
+            let swapped = planned.start_time() >= earliest - 1e-9 && planned.pad == plan.vehicles[before].pad;
+            if !swapped {
+                self.failures.push(Failure::Swap { vehicle: planned.vehicle, flight });
+            }
         }
     }
 

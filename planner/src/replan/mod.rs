@@ -80,9 +80,10 @@ impl Replanner {
     ///
     /// # Errors
     /// [`Error::Mission`] if the plan is not the mission's, or if the mission merges targets (`merge_within` above 0): then a
-    /// target has no circle of its own that could move.
+    /// target has no circle of its own that could move; or if vehicles fly several sorties.
     pub fn new(mission: Mission, plan: Plan) -> Result<Self, Error> {
-        if mission.merge_within > 0.0 || plan.circles.len() != mission.targets.len() {
+        let one_each = plan.vehicles.iter().enumerate().all(|(i, planned)| planned.vehicle == i);
+        if mission.merge_within > 0.0 || plan.circles.len() != mission.targets.len() || !one_each {
             return Err(Error::Mission { problems: vec![Problem::NotReplannable] });
         }
         let usable = vec![true; plan.vehicles.len()];
