@@ -27,17 +27,16 @@ pub(super) fn exchange<const D: usize>(tree: &Tree<D>, run: &mut Run<D>) -> bool
     for (i, &label) in run.labels.iter().enumerate() {
         weights[label as usize] += tree.weight(i);
     }
-    let mut any = false;
-    for _ in 0..PASSES {
-        let mut moved = false;
-        for i in 0..tree.points.len() {
-            if let Some(to) = better(tree, run, &weights, i) {
-                shift(tree, run, &mut weights, i, to);
-                moved = true;
-            }
+    let n = tree.points.len();
+    let (mut any, mut unmoved) = (false, 0);
+    for i in (0..n).cycle().take(PASSES * n) {
+        if let Some(to) = better(tree, run, &weights, i) {
+            shift(tree, run, &mut weights, i, to);
+            (any, unmoved) = (true, 0);
+        } else {
+            unmoved += 1;
         }
-        any |= moved;
-        if !moved {
+        if unmoved == n {
             break;
         }
     }
