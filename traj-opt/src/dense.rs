@@ -79,6 +79,31 @@ pub(crate) fn pieces(n: usize) -> usize {
     n.div_ceil(LANES)
 }
 
+/// Columns of a matrix that are not zero.
+pub(crate) struct Used<const N: usize> {
+    index: [usize; N],
+    count: usize,
+}
+
+impl<const N: usize> Used<N> {
+    #[inline(always)]
+    pub fn columns_of<const R: usize>(a: &Matrix<R, N>) -> Self {
+        let mut used = Self { index: [0; N], count: 0 };
+        for k in 0..N {
+            if a.data.0[k] != [0.0; R] {
+                used.index[used.count] = k;
+                used.count += 1;
+            }
+        }
+        used
+    }
+
+    #[inline(always)]
+    fn indices(&self) -> &[usize] {
+        &self.index[..self.count]
+    }
+}
+
 /// Products of small matrices in one way of rounding.
 pub(crate) trait Arithmetic {
     /// `a b + c`.
@@ -131,23 +156,39 @@ pub(crate) trait Arithmetic {
         a: &Matrix<R, K>,
         b: &Matrix<K, C>,
     ) -> Matrix<R, C> {
-        let mut used = [0; K];
-        let mut n_used = 0;
-        for k in 0..K {
-            if a.data.0[k].iter().any(|&v| v != 0.0) {
-                used[n_used] = k;
-                n_used += 1;
-            }
-        }
+        Self::mul_used(a, b, &Used::columns_of(a))
+    }
+
+    /// `a b` over some columns of `a`.
+    #[inline(always)]
+    fn mul_used<const R: usize, const K: usize, const C: usize>(
+        a: &Matrix<R, K>,
+        b: &Matrix<K, C>,
+        used: &Used<K>,
+    ) -> Matrix<R, C> {
         let mut out = Matrix::<R, C>::zeros();
         for j in 0..C {
             let mut column = [0.0; R];
-            for &k in &used[..n_used] {
+            for &k in used.indices() {
                 Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
             }
             out.data.0[j] = column;
         }
         out
+    }
+
+    /// `a x` over some columns of `a`.
+    #[inline(always)]
+    fn mul_vec_used<const R: usize, const K: usize>(
+        a: &Matrix<R, K>,
+        x: &SVector<f64, K>,
+        used: &Used<K>,
+    ) -> SVector<f64, R> {
+        let mut out = [0.0; R];
+        for &k in used.indices() {
+            Self::axpy(&mut out, x[k], &a.data.0[k]);
+        }
+        SVector::from(out)
     }
 
     /// `a x`.

@@ -180,11 +180,12 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     ) -> Outcome {
         self.filter.start(self.theta(&self.values));
         if !self.warm {
-            if self.primal_residual(&self.values) > INFEASIBLE_GUESS {
-                self.restore(program, RESTORED);
-                self.filter.start(self.theta(&self.values));
+            let far = self.primal_residual(&self.values) > INFEASIBLE_GUESS;
+            let restored = far && self.restore(program, RESTORED);
+            self.filter.start(self.theta(&self.values));
+            if !restored {
+                self.least_squares_multipliers();
             }
-            self.least_squares_multipliers();
         }
         let mut step_length = 1.0;
         let mut acceptable = 0;

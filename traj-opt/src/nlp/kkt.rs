@@ -5,7 +5,7 @@ use super::boundary::BoundaryRows;
 use super::layout::{Layout, Place};
 use super::program::{Duals, Linearisation, Values};
 use super::quadratic::{Quadratic, Rhs, Step};
-use crate::dense::{Arithmetic, Kernel, LANES, array};
+use crate::dense::{Arithmetic, Kernel, LANES, Used, array};
 use crate::dense::{axpy, dispatch, rank_one, vector};
 use nalgebra::{SMatrix, SVector};
 
@@ -119,13 +119,16 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
     /// Maps the second derivatives at the middle states to the segments' other variables.
     #[inline(always)]
     fn add_middles<A: Arithmetic>(&self, lq: &mut Quadratic<NX>) {
-        let m = self.layout.m;
+        // the layout's number, but known at compile time
+        let m = 3 * NU;
         for (k, middle) in self.lin.middles.iter().enumerate() {
             let (hxx, hxu, hxp) = self.middle_hessian(k);
             let su = &self.lin.middle_su[k * m..(k + 1) * m];
             let st = middle.sx.transpose();
-            let hx = A::mul_thin(&hxx, &middle.sx);
-            lq.q[k] += A::mul(&st, &hx);
+            // hxx is symmetric: its products are zero in the rows of the columns that are
+            let used = Used::columns_of(&hxx);
+            let hx = A::mul_used(&hxx, &middle.sx, &used);
+            lq.q[k] += A::mul_used(&st, &hx, &used);
             let hp = A::mul_vec(&hxx, &middle.sp) + hxp;
             lq.qp[k] += A::mul_vec(&st, &hp);
             lq.hpp += middle.sp.dot(&(hp + hxp));
@@ -145,7 +148,7 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
                 }
             }
             for j in 0..m {
-                let mut column = A::mul_vec(&hxx, &su[j]);
+                let mut column = A::mul_vec_used(&hxx, &su[j], &used);
                 if (NU..2 * NU).contains(&j) {
                     let own = hxu.column(j - NU).into_owned();
                     column += own;

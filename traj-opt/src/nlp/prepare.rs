@@ -95,8 +95,8 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
 
     /// Scales of path and boundary rows and of the cost from their gradients.
     pub fn measure<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {
+        self.linearise_first_order(program);
         let layout = &self.layout;
-        program.linearise(layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
         let n = layout.n_path;
         let scales = &program.scales;
         self.path_scale.clear();

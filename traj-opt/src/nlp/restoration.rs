@@ -43,17 +43,17 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             self.duals.reset(&layout, n);
             self.layout = layout;
             self.bounds.start_multipliers(&self.w, self.mu);
-            program.linearise(
-                &self.layout,
-                &self.rows,
-                &self.w,
-                &self.duals,
-                &mut self.scratch,
-                &mut self.lin,
-            );
+            self.linearise_first_order(program);
             self.least_squares_multipliers();
         }
         success
+    }
+
+    /// First derivatives alone at the present point.
+    pub fn linearise_first_order<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {
+        self.scratch.first_order_only = true;
+        program.linearise(&self.layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
+        self.scratch.first_order_only = false;
     }
 
     /// One Gauss-Newton step with backtracking on the violation.
@@ -62,9 +62,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.duals.reset(&layout, self.rows.len());
         self.layout = layout;
         self.bounds.start_multipliers(&self.w, self.mu);
-        self.scratch.first_order_only = true;
-        program.linearise(&self.layout, &self.rows, &self.w, &self.duals, &mut self.scratch, &mut self.lin);
-        self.scratch.first_order_only = false;
+        self.linearise_first_order(program);
         self.lin.raw.clear_hessian();
         self.lin.clear_inner_hessian();
         self.lin.lagrangian.fill(0.0);

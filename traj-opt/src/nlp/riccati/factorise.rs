@@ -2,7 +2,7 @@
 
 use super::triangular::factorise_pieces;
 use super::{NotConvex, Regularisation, Riccati, penalty};
-use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch, rank_one};
+use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch, pieces, rank_one};
 use crate::nlp::quadratic::Quadratic;
 use nalgebra::{SMatrix, SVector};
 
@@ -17,7 +17,11 @@ impl<const NX: usize> Kernel for Factorise<'_, '_, NX> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) -> Self::Output {
-        self.riccati.factorise_here::<A>(self.lq, self.reg)
+        match self.riccati.m {
+            4 => self.riccati.factorise_here::<A, 4>(self.lq, self.reg),
+            12 => self.riccati.factorise_here::<A, 12>(self.lq, self.reg),
+            _ => self.riccati.factorise_here::<A, 0>(self.lq, self.reg),
+        }
     }
 }
 
@@ -30,8 +34,14 @@ impl<const NX: usize> Riccati<NX> {
         dispatch(Factorise { riccati: self, lq, reg })
     }
 
+    /// Controls of a segment: `M`, or the number that is known at run time only if `M` is 0.
     #[inline(always)]
-    fn factorise_here<A: Arithmetic>(
+    pub(super) fn controls<const M: usize>(&self) -> usize {
+        if M > 0 { M } else { self.m }
+    }
+
+    #[inline(always)]
+    fn factorise_here<A: Arithmetic, const M: usize>(
         &mut self,
         lq: &Quadratic<NX>,
         reg: &Regularisation<NX>,
@@ -42,10 +52,10 @@ impl<const NX: usize> Riccati<NX> {
             self.transpose(k, lq);
             // row j of A' P is column j of P A
             let product = A::mul(&self.transposed[k], &self.value[k + 1]);
-            self.control_hessian::<A>(k, lq, reg)?;
-            self.control_gain::<A>(k, lq, &product);
-            self.knot::<A>(k, lq, reg, &product);
-            self.border_columns::<A>(k, lq);
+            self.control_hessian::<A, M>(k, lq, reg)?;
+            self.control_gain::<A, M>(k, lq, &product);
+            self.knot::<A, M>(k, lq, reg, &product);
+            self.border_columns::<A, M>(k, lq);
         }
         self.start_state(lq)?;
         self.factorise_border()
@@ -101,13 +111,14 @@ impl<const NX: usize> Riccati<NX> {
 
     /// `R~ = r + b' P b + b' cross + cross' b`, factorised.
     #[inline(always)]
-    fn control_hessian<A: Arithmetic>(
+    fn control_hessian<A: Arithmetic, const M: usize>(
         &mut self,
         k: usize,
         lq: &Quadratic<NX>,
         reg: &Regularisation<NX>,
     ) -> Result<(), NotConvex> {
-        let (m, mc) = (self.m, self.control_pieces);
+        let m = self.controls::<M>();
+        let mc = pieces(m);
         let panels = &self.control_rows[k * mc..(k + 1) * mc];
         for j in 0..m {
             let work = A::mul_vec(&self.value[k + 1], &lq.b[k * m + j]);
@@ -140,8 +151,13 @@ impl<const NX: usize> Riccati<NX> {
 
     /// `L^-1 (s + A' (P b + cross))'`.
     #[inline(always)]
-    fn control_gain<A: Arithmetic>(&mut self, k: usize, lq: &Quadratic<NX>, product: &SMatrix<f64, NX, NX>) {
-        let m = self.m;
+    fn control_gain<A: Arithmetic, const M: usize>(
+        &mut self,
+        k: usize,
+        lq: &Quadratic<NX>,
+        product: &SMatrix<f64, NX, NX>,
+    ) {
+        let m = self.controls::<M>();
         let factor = &self.factor[k * m * m..(k + 1) * m * m];
         for i in 0..m {
             let (done, rest) = self.gain[k * m..(k + 1) * m].split_at_mut(i);
@@ -167,14 +183,15 @@ impl<const NX: usize> Riccati<NX> {
 
     /// Value function's Hessian at knot `k`.
     #[inline(always)]
-    fn knot<A: Arithmetic>(
+    fn knot<A: Arithmetic, const M: usize>(
         &mut self,
         k: usize,
         lq: &Quadratic<NX>,
         reg: &Regularisation<NX>,
         product: &SMatrix<f64, NX, NX>,
     ) {
-        let gains = &self.gain[k * self.m..(k + 1) * self.m];
+        let m = self.controls::<M>();
+        let gains = &self.gain[k * m..(k + 1) * m];
         let mut value = SMatrix::<f64, NX, NX>::zeros();
         for c in 0..NX {
             let mut column = lq.q[k].data.0[c];
@@ -195,8 +212,8 @@ impl<const NX: usize> Riccati<NX> {
 
     /// Border columns at knot `k` and what the segment adds to the border's Schur complement.
     #[inline(always)]
-    fn border_columns<A: Arithmetic>(&mut self, k: usize, lq: &Quadratic<NX>) {
-        let (m, nb, nc) = (self.m, self.n_border, self.border_pieces);
+    fn border_columns<A: Arithmetic, const M: usize>(&mut self, k: usize, lq: &Quadratic<NX>) {
+        let (m, nb, nc) = (self.controls::<M>(), self.n_border, self.border_pieces);
         let gains = &mut self.border_gain[k * m * nc..(k + 1) * m * nc];
         let factor = &self.factor[k * m * m..(k + 1) * m * m];
         let ap = array(&lq.ap[k]);

@@ -2,7 +2,7 @@
 
 use super::triangular::{backward_scaled, forward_scaled};
 use super::{Riccati, penalty};
-use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch};
+use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch, pieces};
 use crate::nlp::quadratic::{Quadratic, Rhs, Step};
 use nalgebra::SVector;
 
@@ -19,10 +19,21 @@ impl<const NX: usize> Kernel for Solve<'_, NX> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        self.riccati.backward::<A>(self.lq, self.state_weight, self.rhs);
+        match self.riccati.m {
+            4 => self.run_with::<A, 4>(),
+            12 => self.run_with::<A, 12>(),
+            _ => self.run_with::<A, 0>(),
+        }
+    }
+}
+
+impl<const NX: usize> Solve<'_, NX> {
+    #[inline(always)]
+    fn run_with<A: Arithmetic, const M: usize>(self) {
+        self.riccati.backward::<A, M>(self.lq, self.state_weight, self.rhs);
         self.riccati.solve_border(self.step);
         self.riccati.solve_start(self.step);
-        self.riccati.forward::<A>(self.lq, self.rhs, self.step);
+        self.riccati.forward::<A, M>(self.lq, self.rhs, self.step);
     }
 }
 
@@ -39,14 +50,14 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     #[inline(always)]
-    fn backward<A: Arithmetic>(
+    fn backward<A: Arithmetic, const M: usize>(
         &mut self,
         lq: &Quadratic<NX>,
         state_weight: &SVector<f64, NX>,
         rhs: &Rhs<NX>,
     ) {
-        let (n, m, nb) = (self.n, self.m, self.n_border);
-        let (mc, nc) = (self.control_pieces, self.border_pieces);
+        let (n, m, nb) = (self.n, self.controls::<M>(), self.n_border);
+        let (mc, nc) = (pieces(m), self.border_pieces);
         let mut linear = rhs.gx[n];
         self.border_rhs.fill([0.0; LANES]);
         self.border_rhs[0][0] = rhs.gp;
@@ -96,8 +107,13 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     #[inline(always)]
-    fn forward<A: Arithmetic>(&mut self, lq: &Quadratic<NX>, rhs: &Rhs<NX>, step: &mut Step<NX>) {
-        let (n, m, nc) = (self.n, self.m, self.border_pieces);
+    fn forward<A: Arithmetic, const M: usize>(
+        &mut self,
+        lq: &Quadratic<NX>,
+        rhs: &Rhs<NX>,
+        step: &mut Step<NX>,
+    ) {
+        let (n, m, nc) = (self.n, self.controls::<M>(), self.border_pieces);
         self.weights.fill([0.0; LANES]);
         self.weights[0][0] = if self.free_time { step.dp } else { 0.0 };
         for (j, weight) in step.boundary.iter().enumerate() {
