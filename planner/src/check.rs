@@ -59,6 +59,10 @@ impl Mission {
         ranges.within("fleet.vehicles", &[self.fleet.vehicles as f64], 0.0, 1000.0, "up to 1000");
         ranges.within("fleet.separation", &[self.fleet.separation], 0.0, 1000.0, "from 0 to 1000 (m)");
         ranges.above_zero("fleet.endurance", self.fleet.endurance, f64::INFINITY, "above 0 (s)");
+        if let Some(camera) = self.camera {
+            let range = "from 0 to 10000 (m)";
+            ranges.within("camera.target_height", &[camera.target_height], 0.0, 1e4, range);
+        }
         if let Some(swap_time) = self.swap_time {
             ranges.within("fleet.swap_time", &[swap_time], 0.0, 1e6, "from 0 to 1000000 (s)");
         }

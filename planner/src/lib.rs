@@ -15,6 +15,7 @@
 //! | whole routes | entries that are best for a route, not for a leg | `whole_route.rs`, `time_model.rs` |
 //! | events | what is being flown stays, the rest follows the mission as it changes | `replan/` |
 //! | certificate | makespan and total beside lower bounds | `certificate.rs` |
+//! | camera | the share of its loiter in which each target is in the picture | `in_view.rs` |
 //! | verification | all controls integrated again, independently, each leg in the wind it was planned for | `verify.rs`, `airs.rs` |
 //!
 //! # Example
@@ -37,7 +38,8 @@
 //! - Every leg in a plan was solved; a leg that could not be is an [`Error::Leg`] with all residuals.
 //! - Candidate entries are compared on coarse meshes first, and some are left out on an estimate ([`Outcome::Slower`]), others on a
 //!   proven bound ([`Outcome::ProvenWorse`]). Each is recorded as what it is, and [`Options::exhaustive`] solves all to the end.
-//! - The certificate's lower bounds hold over every allocation, order, entry, direction and admissible motion.
+//! - The certificate's lower bounds hold over every allocation, order, entry, direction and admissible motion; a test holds them against
+//!   all plans of small missions (`exhaustive.rs`).
 //! - The same mission and seed give the same plan to the bit, with or without the feature `rayon`, on any number of threads.
 //!
 //! What is *not* guaranteed: that a transition is the global optimum of its problem (the solver finds local ones from several
@@ -58,6 +60,9 @@ mod circles;
 mod closed_loop;
 mod entry;
 mod error;
+#[cfg(test)]
+mod exhaustive;
+mod in_view;
 mod legs;
 mod mission;
 mod options;
@@ -83,8 +88,8 @@ pub use traj_opt;
 pub use closed_loop::Flown;
 pub use error::{Error, Problem};
 pub use mission::{
-    Entries, Environment, Fleet, LoiterSettings, Mission, Model, Objective, Pipeline, Target, Transcription,
-    TransitionSettings,
+    CameraSettings, Entries, Environment, Fleet, LoiterSettings, Mission, Model, Objective, Pipeline, Target,
+    Transcription, TransitionSettings,
 };
 pub use options::{Options, Progress};
 pub use plan::{

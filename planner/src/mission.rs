@@ -4,7 +4,7 @@
 //! ground). Files, degrees and geographic coordinates belong to the caller.
 
 use nalgebra::Vector3;
-use quad_dynamics::{LoiterYaw, ShapingLimits, Vehicle};
+use quad_dynamics::{Camera, LoiterYaw, ShapingLimits, Vehicle};
 
 /// A mission: who flies where, and within which limits.
 ///
@@ -26,6 +26,8 @@ pub struct Mission {
     /// Time to swap a vehicle's battery on its pad (s); `None` if each flies once. Where endurance or battery are too small for one
     /// flight each, vehicles then fly several sorties.
     pub swap_time: Option<f64>,
+    /// The camera that must see the targets; `None` if nobody asks.
+    pub camera: Option<CameraSettings>,
     /// What they fly through.
     pub environment: Environment,
     /// What must be circled.
@@ -120,6 +122,15 @@ impl Default for TransitionSettings {
             shaping: ShapingLimits::arducopter(),
         }
     }
+}
+
+/// The camera of every vehicle, and what it looks at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraSettings {
+    /// The camera: mount and angles of view.
+    pub camera: Camera,
+    /// Height above the ground of what must be in the picture (m): the middle of a plant, or of a person.
+    pub target_height: f64,
 }
 
 /// What the vehicles fly through. Default: still air.
@@ -228,6 +239,7 @@ impl Mission {
             loiter: LoiterSettings::default(),
             transition: TransitionSettings::default(),
             swap_time: None,
+            camera: None,
             environment: Environment::default(),
             targets,
             merge_within: 0.0,

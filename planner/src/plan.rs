@@ -257,6 +257,13 @@ pub enum Warning {
         /// Flights, by as many vehicles as there are.
         flights: usize,
     },
+    /// The camera does not see a target all the way round ([`Plan::shares_in_view`]).
+    OutOfView {
+        /// The target that is in view least; the first of several.
+        target: usize,
+        /// The share of its loiter during which it is in view, below 1.
+        share: f64,
+    },
     /// There are more vehicles than routes.
     Spare {
         /// How many vehicles stay at the depot.

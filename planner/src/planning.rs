@@ -209,6 +209,10 @@ fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
     if spare > 0 {
         warnings.push(Warning::Spare { vehicles: spare });
     }
+    let shares = plan.shares_in_view(mission).unwrap_or_default();
+    let least = shares.into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+    let unseen = least.filter(|&(_, share)| share < 1.0);
+    warnings.extend(unseen.map(|(target, share)| Warning::OutOfView { target, share }));
     for (vehicle, planned) in plan.vehicles.iter().enumerate() {
         let (duration, endurance) = (planned.duration(), mission.fleet.endurance);
         if duration > endurance {

@@ -1,0 +1,166 @@
+//! Certificates against all plans of small missions: every split, order, direction and entry, each leg solved.
+
+use crate::airs::Airs;
+use crate::bound::Envelope;
+use crate::entry;
+use crate::legs::Airspace;
+use crate::mission::{Entries, Mission, Model, Objective, Target};
+use crate::options::{Options, Watch};
+use crate::plan::{Entry, VehiclePlan};
+use crate::planning::{envelope, plan};
+use quad_dynamics::{Motion, Vehicle, VehicleParameters};
+
+/// Times of all legs (s), infinite where the solver finds none.
+struct Times {
+    n_entries: usize,
+    loiters: Vec<f64>,
+    /// By pad, circle and entry.
+    out: Vec<Vec<Vec<f64>>>,
+    home: Vec<Vec<Vec<f64>>>,
+    /// By circle and entry, and by the next circle and entry.
+    between: Vec<Vec<Vec<Vec<f64>>>>,
+}
+
+impl Times {
+    fn of(mission: &Mission) -> Self {
+        let pads = mission.pads();
+        let airs = Airs::new(&plan(mission, &Options::default()).unwrap(), mission);
+        let air = airs.at(0.0);
+        let envelope: Envelope = envelope(mission, &air.orbits);
+        let (pilot, watch) = (air.pilot.clone(), Watch::new(Options::default(), 0));
+        let airspace = Airspace { mission, orbits: &air.orbits, pilot, envelope, watch };
+        let entries = entry::sampled(mission.transition.entries);
+        let circles = 0..air.orbits.len();
+        let to = |here: &Motion, circle: usize, entry: Entry| {
+            let (transition, found, _) = airspace.reach(here, &air.orbits[circle], entry);
+            transition.filter(|_| found == entry).map_or(f64::INFINITY, |transition| transition.duration)
+        };
+        let to_all = |here: &Motion, circle: usize| -> Vec<f64> {
+            entries.iter().map(|&entry| to(here, circle, entry)).collect()
+        };
+        let exit = |circle: usize, entry: Entry| air.orbits[circle].exit(entry);
+        let back = |pad: [f64; 3], circle: usize, entry: Entry| {
+            airspace
+                .to_pad(&exit(circle, entry), pad)
+                .0
+                .map_or(f64::INFINITY, |transition| transition.duration)
+        };
+        let onwards = |circle: usize, entry: Entry| {
+            let next = |next: usize| match next == circle {
+                true => Vec::new(),
+                false => to_all(&exit(circle, entry), next),
+            };
+            circles.clone().map(next).collect()
+        };
+        let out = |&pad: &[f64; 3]| {
+            circles.clone().map(|circle| to_all(&airspace.take_off(pad, &[circle]), circle)).collect()
+        };
+        let home = |&pad: &[f64; 3]| {
+            let from = |circle| entries.iter().map(|&entry| back(pad, circle, entry)).collect();
+            circles.clone().map(from).collect()
+        };
+        Self {
+            n_entries: entries.len(),
+            loiters: air.orbits.iter().map(|orbit| orbit.circle.duration).collect(),
+            out: pads.iter().map(out).collect(),
+            home: pads.iter().map(home).collect(),
+            between: circles
+                .clone()
+                .map(|circle| entries.iter().map(|&entry| onwards(circle, entry)).collect())
+                .collect(),
+        }
+    }
+
+    /// The least time of a route over all entries (s).
+    fn route(&self, vehicle: usize, route: &[usize]) -> f64 {
+        let Some((&first, rest)) = route.split_first() else { return 0.0 };
+        let from = |entry: usize| self.out[vehicle][first][entry] + self.rest(vehicle, (first, entry), rest);
+        (0..self.n_entries).map(from).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same from a circle and its entry on.
+    fn rest(&self, vehicle: usize, (circle, entry): (usize, usize), rest: &[usize]) -> f64 {
+        let then = match rest.split_first() {
+            None => self.home[vehicle][circle][entry],
+            Some((&next, rest)) => (0..self.n_entries)
+                .map(|there| {
+                    self.between[circle][entry][next][there] + self.rest(vehicle, (next, there), rest)
+                })
+                .fold(f64::INFINITY, f64::min),
+        };
+        self.loiters[circle] + then
+    }
+
+    /// The least makespan and the least total over all splits and orders for one or two vehicles (s).
+    fn best(&self) -> [f64; 2] {
+        let mut best = [f64::INFINITY; 2];
+        for order in orders(self.loiters.len()) {
+            let cuts = if self.out.len() == 1 { order.len()..=order.len() } else { 0..=order.len() };
+            for cut in cuts {
+                let first = self.route(0, &order[..cut]);
+                let second = if cut < order.len() { self.route(1, &order[cut..]) } else { 0.0 };
+                best = [best[0].min(first.max(second)), best[1].min(first + second)];
+            }
+        }
+        best
+    }
+}
+
+/// All orders of so many things.
+fn orders(n: usize) -> Vec<Vec<usize>> {
+    let Some(last) = n.checked_sub(1) else { return vec![Vec::new()] };
+    let put = |order: Vec<usize>| {
+        (0..n).map(move |place| {
+            let mut longer = order.clone();
+            longer.insert(place, last);
+            longer
+        })
+    };
+    orders(last).into_iter().flat_map(put).collect()
+}
+
+/// A plan's legs and those of this search are solved from different guesses to the solver's tolerance.
+const TOLERANCE: f64 = 5e-3;
+
+#[test]
+fn no_plan_of_a_small_mission_beats_the_certificate_and_no_plan_beats_them_all() {
+    let near = [[9.0, 4.0], [14.0, -6.0], [-8.0, 9.0]];
+    let far = [[40.0, 10.0], [33.0, -25.0], [60.0, -4.0]];
+    for (positions, n_vehicles, n_entries, model, wind) in [
+        (&near[..], 1, 2, Model::ThrustRate, [0.0; 2]),
+        (&near[..], 2, 2, Model::ThrustRate, [0.0; 2]),
+        (&far[..], 2, 2, Model::PointMass, [0.0; 2]),
+        (&far[..2], 2, 4, Model::ThrustRate, [0.0; 2]),
+        (&far[..2], 1, 3, Model::PointMass, [4.0, -3.0]),
+    ] {
+        let vehicle = Vehicle::new(VehicleParameters::survey_450()).unwrap();
+        let targets = positions.iter().map(|&position| Target::at(position)).collect();
+        let mut mission = Mission::new(vehicle, n_vehicles, targets);
+        mission.transition.model = model;
+        mission.transition.segments = 20;
+        mission.transition.entries = Entries::Sampled(n_entries);
+        mission.environment.wind = wind;
+        let [makespan, total] = Times::of(&mission).best();
+        assert!(makespan.is_finite() && total.is_finite());
+        for objective in [Objective::Makespan, Objective::Total] {
+            mission.objective = objective;
+            let plan = plan(&mission, &Options::default()).unwrap();
+            let found = plan.certificate;
+            println!(
+                "{} targets, {n_vehicles} vehicles, {objective:?}: makespan {:.3} >= {makespan:.3} >= {:.3}, total {:.3} >= {total:.3} >= {:.3}",
+                positions.len(),
+                found.makespan,
+                found.makespan_lower_bound,
+                found.total,
+                found.total_lower_bound
+            );
+            assert!(found.makespan_lower_bound <= makespan, "{found:?} but {makespan}");
+            assert!(found.total_lower_bound <= total, "{found:?} but {total}");
+            let longest = plan.vehicles.iter().map(VehiclePlan::duration).fold(0.0, f64::max);
+            assert!(longest >= makespan * (1.0 - TOLERANCE), "{longest} but {makespan}");
+            assert!(found.total >= total * (1.0 - TOLERANCE), "{found:?} but {total}");
+            // The bounds mean something: they are not far below.
+            assert!(found.total_lower_bound > 0.5 * total && found.makespan_lower_bound > 0.5 * makespan);
+        }
+    }
+}
