@@ -90,7 +90,7 @@ impl<const N: usize> Used<N> {
     pub fn columns_of<const R: usize>(a: &Matrix<R, N>) -> Self {
         let mut used = Self { index: [0; N], count: 0 };
         for k in 0..N {
-            if a.data.0[k] != [0.0; R] {
+            if !is_zero(&a.data.0[k]) {
                 used.index[used.count] = k;
                 used.count += 1;
             }
@@ -102,6 +102,27 @@ impl<const N: usize> Used<N> {
     fn indices(&self) -> &[usize] {
         &self.index[..self.count]
     }
+}
+
+/// True if all numbers are zero; no early end, so that it is done with wide instructions.
+#[inline(always)]
+fn is_zero<const N: usize>(x: &[f64; N]) -> bool {
+    let mut bits = 0;
+    for v in x {
+        bits |= v.to_bits() << 1;
+    }
+    bits == 0
+}
+
+/// True for column `j` of the identity: of a map that adds a variable to what it was and depends on it no further.
+#[inline(always)]
+pub(crate) fn is_unit<const N: usize>(x: &[f64; N], j: usize) -> bool {
+    let mut rest = [0.0; N];
+    for i in 0..N {
+        // not one store to rest[j], on which the wide loads that follow would wait
+        rest[i] = x[i] - if i == j { 1.0 } else { 0.0 };
+    }
+    is_zero(&rest)
 }
 
 /// Products of small matrices in one way of rounding.
@@ -171,6 +192,23 @@ pub(crate) trait Arithmetic {
             let mut column = [0.0; R];
             for &k in used.indices() {
                 Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
+            }
+            out.data.0[j] = column;
+        }
+        out
+    }
+
+    /// `a b` for a square `b` that shares some columns with the identity.
+    #[inline(always)]
+    fn mul_units<const R: usize, const K: usize>(a: &Matrix<R, K>, b: &Matrix<K, K>) -> Matrix<R, K> {
+        let mut out = Matrix::<R, K>::zeros();
+        for j in 0..K {
+            let mut column = a.data.0[j];
+            if !is_unit(&b.data.0[j], j) {
+                column = [0.0; R];
+                for k in 0..K {
+                    Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
+                }
             }
             out.data.0[j] = column;
         }
@@ -252,6 +290,9 @@ pub(crate) trait Arithmetic {
             }
             c.swap(k, best);
             order.swap(k, best);
+            if best == k && is_unit(&c[k], k) {
+                continue; // the step would change nothing
+            }
             let pivot = 1.0 / c[k][k];
             let own = c[k];
             for j in 0..N {
@@ -342,7 +383,11 @@ pub(crate) fn tr_mul_vec<const R: usize, const K: usize>(
     a: &Matrix<K, R>,
     x: &SVector<f64, K>,
 ) -> SVector<f64, R> {
-    SVector::from_fn(|i, _| dot(&a.data.0[i], array(x)))
+    let mut out = [0.0; R];
+    for i in 0..R {
+        out[i] = dot(&a.data.0[i], array(x));
+    }
+    SVector::from(out)
 }
 
 /// `a' b`.

@@ -135,7 +135,7 @@ fn eliminate<A: Arithmetic, const NX: usize, const NU: usize>(
     let implicit = one - model[2].f.state * (h * WEIGHT[2]) - A::mul_thin(&defect_by, &by_next);
     let resolve = A::inverse(&implicit).unwrap_or_else(SMatrix::identity);
     let explicit = one + model[0].f.state * (h * WEIGHT[0]) + A::mul_thin(&defect_by, &by_first);
-    let a = A::mul(&resolve, &explicit);
+    let a = A::mul_units(&resolve, &explicit);
     let (mut defect_p, mut middle_p) = (SVector::zeros(), SVector::zeros());
     for i in 0..3 {
         let rate = model[i].f.value * h_rate + model[i].f.time * (h * at[i].t_rate);
@@ -154,7 +154,7 @@ fn eliminate<A: Arithmetic, const NX: usize, const NU: usize>(
         }
     }
     let middle = &mut out.middles[k];
-    middle.sx = by_first + A::mul(&by_next, &a);
+    middle.sx = by_first + A::mul_units(&by_next, &a);
     middle.sp = middle_p + A::mul_vec(&by_next, &ap);
     (middle.by_next, middle.defect_by) = (by_next, defect_by);
     (out.raw.a[k], out.raw.ap[k], out.resolve[k]) = (a, ap, resolve);

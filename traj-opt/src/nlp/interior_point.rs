@@ -155,14 +155,19 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
 
     /// KKT residuals with the barrier parameter `mu` and IPOPT's scaling by the size of the multipliers.
     pub fn residuals(&self, mu: f64) -> Residuals {
-        let (sum, count) = self.bounds.multiplier_sum();
-        let mean = if count > 0 { sum / count as f64 } else { 0.0 };
-        let scale = mean.max(S_MAX) / S_MAX;
+        let scale = self.multiplier_scale();
         Residuals {
             primal: self.primal_residual(&self.values),
             dual: self.dual_residual() / scale,
             complementarity: self.bounds.complementarity(&self.w, mu) / (scale * self.objective_scale),
         }
+    }
+
+    /// IPOPT's scaling by the size of the multipliers.
+    fn multiplier_scale(&self) -> f64 {
+        let (sum, count) = self.bounds.multiplier_sum();
+        let mean = if count > 0 { sum / count as f64 } else { 0.0 };
+        mean.max(S_MAX) / S_MAX
     }
 
     /// Barrier cost of a point.
@@ -240,7 +245,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
                     continue;
                 }
             }
-            self.update_barrier(options);
+            self.update_barrier(options, residuals);
             if self.newton_direction().is_err() {
                 return finish(fallback(Status::Stalled));
             }
@@ -260,11 +265,14 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     }
 
     /// Monotone decrease of mu (Fiacco and McCormick) once the barrier problem is solved well enough.
-    fn update_barrier(&mut self, options: &Options) {
+    fn update_barrier(&mut self, options: &Options, mut residuals: Residuals) {
         let least = options.tolerance / 10.0 * self.objective_scale;
-        while self.mu > least
-            && worst_of(&self.residuals(self.mu)) <= KAPPA_EPSILON * self.mu / self.objective_scale
-        {
+        let scale = self.multiplier_scale() * self.objective_scale;
+        while self.mu > least {
+            residuals.complementarity = self.bounds.complementarity(&self.w, self.mu) / scale;
+            if worst_of(&residuals) > KAPPA_EPSILON * self.mu / self.objective_scale {
+                break;
+            }
             self.mu = (KAPPA_MU * self.mu).min(self.mu.powf(THETA_MU)).max(least);
             self.filter.clear();
         }

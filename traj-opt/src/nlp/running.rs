@@ -53,6 +53,7 @@ pub(crate) struct PointTime {
 }
 
 /// First derivatives of dynamics and running cost.
+#[inline(always)]
 pub(crate) fn differentiate<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     problem: &P,
     t: f64,
