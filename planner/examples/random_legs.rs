@@ -1,9 +1,9 @@
 //! How many candidate entries do the bounds discard, and is the entry chosen the one that solving all would choose?
 //!
-//! `cargo run --release -p uav-planner --features rayon --example random_legs -- [LEGS] [SPREAD] [MODEL]`
+//! `cargo run --release -p uav-planner --features rayon --example random_legs -- [LEGS] [SPREAD] [MODEL] [EAST NORTH]`
 //!
 //! `LEGS` random legs from circle to circle (default 1000), targets up to `SPREAD` m apart (default 60), 16 entries in both
-//! directions, `MODEL` thrust-rate (default), rigid-body or point-mass.
+//! directions, `MODEL` thrust-rate (default), rigid-body or point-mass, in a wind towards `EAST`, `NORTH` (m/s; default still air).
 
 use planner::quad_dynamics::{Vehicle, VehicleParameters};
 use planner::{Mission, Model, Options, Outcome, Pipeline, Target, plan};
@@ -20,6 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some("point-mass") => Model::PointMass,
         Some(other) => return Err(format!("no model {other}").into()),
     };
+    let wind: Vec<f64> = words.iter().skip(3).map(|word| word.parse()).collect::<Result<_, _>>()?;
     let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
     let (mut seen, mut discarded, mut candidates) = (0, 0, 0);
     // Of the legs from hover, and of those from circle to circle.
@@ -31,6 +32,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         mission.depot = [spread, spread];
         mission.loiter.radius = random.random_range(2.0..8.0);
         mission.transition.model = model;
+        if let [east, north] = wind[..] {
+            mission.environment.wind = [east, north];
+        }
         mission.pipeline = Pipeline::Paper;
         let [a, b] = [mission.targets[0].position, mission.targets[1].position];
         if (a[0] - b[0]).hypot(a[1] - b[1]) < mission.loiter.radius + mission.transition.safe_distance {
@@ -50,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         discarded += pruned[1].candidates.iter().filter(|candidate| worse(&candidate.outcome)).count();
         excess[1].push(pruned[1].transition.duration / all[1].transition.duration - 1.0);
     }
-    println!("{seen} legs of {model:?}, targets within {spread} m: {candidates} candidates");
+    println!("{seen} legs of {model:?}, targets within {spread} m, wind {wind:?}: {candidates} candidates");
     println!("discarded by their bounds: {:.1} %", 100.0 * discarded as f64 / candidates as f64);
     for (kind, excess) in ["from hover", "from circle to circle"].into_iter().zip(&excess) {
         let agreed = excess.iter().filter(|&&excess| excess <= 1e-3).count();

@@ -76,6 +76,10 @@ pub(crate) fn fewest_routes(
 /// counted as the least time for its length from loiter speed to loiter speed. In still air that time is an increasing, concave
 /// function of a metric and 0 at 0, so a metric; in wind it depends on the direction of travel, and no bound of Christofides' is
 /// claimed.
+///
+/// Solved legs scatter around any function of the distance alone, since entries and exits move them: example `leg_times`, 92 legs of
+/// 2.2 to 2.3 s among 100 targets in 300 m x 300 m, is off by 0.26 s (root mean square) and at most 0.63 s where every leg is the fastest
+/// by itself, by 0.09 s and at most 0.49 s where entries are chosen for whole routes.
 fn legs(mission: &Mission, orbits: &[Orbit], envelope: &Envelope) -> (LegTimes, Vec<f64>) {
     let nodes: Vec<Vector2<f64>> = std::iter::once(mission.depot)
         .chain(orbits.iter().map(|orbit| orbit.circle.centre))

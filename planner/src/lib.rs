@@ -43,7 +43,8 @@
 //! - The same mission and seed give the same plan to the bit, with or without the feature `rayon`, on any number of threads.
 //!
 //! What is *not* guaranteed: that a transition is the global optimum of its problem (the solver finds local ones from several
-//! guesses), or that clustering first gives routes within a factor of the best (it has none; see [`Certificate`]).
+//! guesses), or that clustering first gives routes within a factor of the best (it has none; see [`Certificate`]). A
+//! plan that a [`Replanner`] has changed carries no lower bounds: they are 0.
 //!
 //! # Features
 //! `rayon`: routes and candidate entries are solved side by side.
