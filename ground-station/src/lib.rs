@@ -54,6 +54,7 @@
 
 pub mod cli;
 pub mod command;
+pub mod events;
 pub mod execution;
 pub mod export;
 pub mod failure;

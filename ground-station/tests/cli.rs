@@ -196,3 +196,47 @@ fn a_plan_is_flown_in_wind() -> Result<(), Box<dyn Error>> {
     assert_eq!(run(&["simulate", "--wind", "storm"], home.path())?.status.code(), Some(2));
     Ok(())
 }
+
+/// Targets come, go and move: the log says what came of each, and the last plan stands.
+#[test]
+fn events_are_followed_while_the_team_flies() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    assert_eq!(run(&["init", "m.toml", "--vehicles", "2"], home.path())?.status.code(), Some(0));
+    let events =
+        "# five\n1.0 appears 30 -25\n3 vanishes 99\n4 moves 1 -20 22 # away\n5 vanishes 2\n6 returns 7\n";
+    std::fs::write(home.path().join("events.txt"), events)?;
+    let simulate = run(&["simulate", "m.toml", "--arrivals", "events.txt", "--out", "s"], home.path())?;
+    assert_eq!(simulate.status.code(), Some(0), "{}", text(&simulate.stderr));
+    assert!(
+        text(&simulate.stdout).contains("stands up to the independent check"),
+        "{}",
+        text(&simulate.stdout)
+    );
+    let log = std::fs::read_to_string(home.path().join("s/events.log"))?;
+    for wanted in [
+        "appears at 30.0 m east, -25.0 m north: new flights",
+        "refused: there is no target 99",
+        "no vehicle 7",
+    ] {
+        assert!(log.contains(wanted), "{wanted}: {log}");
+    }
+    let chance = ["simulate", "m.toml", "--arrival-rate", "6", "--seed", "4", "--out", "c"];
+    assert_eq!(run(&chance, home.path())?.status.code(), Some(0));
+    assert!(std::fs::read_to_string(home.path().join("c/events.log"))?.contains("target"));
+
+    std::fs::write(home.path().join("bad.txt"), "1 appears 2\nsoon fails 1\n")?;
+    let bad = run(&["simulate", "m.toml", "--arrivals", "bad.txt", "--out", "b"], home.path())?;
+    let error = text(&bad.stderr);
+    assert!(
+        bad.status.code() == Some(2) && error.contains("bad.txt:1") && error.contains("bad.txt:2"),
+        "{error}"
+    );
+    let plain = std::fs::read_to_string(home.path().join("m.toml"))?;
+    let merged = format!("{plain}\n[targets]\nmerge_within = 5.0\n");
+    std::fs::write(home.path().join("merged.toml"), merged)?;
+    let refused = run(&["simulate", "merged.toml", "--arrivals", "events.txt", "--out", "b"], home.path())?;
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("targets.merge_within"), "{}", text(&refused.stderr));
+    assert!(!home.path().join("b").exists());
+    Ok(())
+}

@@ -28,6 +28,8 @@ pub(super) const SIMULATE_EXAMPLES: &str = "\
 Examples:
   ground-station simulate field.toml                      still air
   ground-station simulate field.toml --wind 3,-2 --gusts 5 --noise --seed 7
+  ground-station simulate field.toml --arrivals events.txt    re-planned at every event of a file
+  ground-station simulate field.toml --arrival-rate 4         four events a minute, by chance
 
 Files: flown.svg (planned and flown), flown-<i>.csv, events.log.";
 
@@ -131,7 +133,14 @@ pub struct SimulateArguments {
     /// Errors of the estimates that the controllers see, as of satellite positioning with corrections.
     #[arg(long)]
     pub noise: bool,
-    /// Seed of gusts and errors.
+    /// Events while the team flies, one a line: TIME appears EAST NORTH, TIME moves TARGET EAST NORTH, TIME vanishes TARGET,
+    /// TIME fails VEHICLE, TIME returns VEHICLE (s, m, numbered from 1).
+    #[arg(long, value_name = "FILE")]
+    pub arrivals: Option<PathBuf>,
+    /// Events per minute by chance: targets that appear (half of them), vanish and move.
+    #[arg(long, value_name = "PER-MINUTE", default_value_t = 0.0, value_parser = parse_not_negative, conflicts_with = "arrivals")]
+    pub arrival_rate: f64,
+    /// Seed of gusts, errors and events by chance.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Replace files that are there.
@@ -144,8 +153,8 @@ pub struct SimulateArguments {
 
 impl SimulateArguments {
     pub(super) fn request(self) -> SimulateRequest {
-        let Self { file, out, wind, gusts, noise, seed, force, quiet } = self;
-        SimulateRequest { file, out, wind, gusts, noise, seed, force, quiet }
+        let Self { file, out, wind, gusts, noise, arrivals, arrival_rate, seed, force, quiet } = self;
+        SimulateRequest { file, out, wind, gusts, noise, arrivals, arrival_rate, seed, force, quiet }
     }
 }
 

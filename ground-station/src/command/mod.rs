@@ -3,6 +3,7 @@
 mod check;
 mod export;
 mod fly;
+mod follow;
 mod init;
 mod outputs;
 mod plan;

@@ -121,6 +121,7 @@ fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> 
         transit: vehicle.transition_time(),
         loiters: vehicle.loiter_time(),
         total: vehicle.duration(),
+        energy: plan.energy(&file.mission, index).ok_or(Failure::Sampling { vehicle: index })?,
         top_speed,
         top_tilt,
         miss: vehicle.legs.iter().fold(Miss::default(), |worst, leg| worst_of(worst, leg.transition.miss)),

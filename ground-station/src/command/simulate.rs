@@ -1,15 +1,18 @@
-//! `simulate`: a plan flown by a simulated team in wind and gusts.
+//! `simulate`: a plan flown by a simulated team in wind and gusts, re-planned as targets come, go and move.
 
+use super::follow::{Followed, follow};
 use super::plan::{mission, search};
+use crate::events::Arrivals;
 use crate::export::folder::{self, OutputFile};
 use crate::export::members;
 use crate::failure::Failure;
 use crate::input::MissionFile;
 use crate::plot::{MapVehicle, map, map_scene};
+use crate::problem::Problem;
 use crate::report::Table;
 use planner::quad_dynamics::nalgebra::Vector3;
 use planner::quad_dynamics::simulation::{SensorNoise, SimulationOptions};
-use planner::{Flown, Plan};
+use planner::{Flown, Plan, Tolerances, Verification};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -26,7 +29,11 @@ pub struct SimulateRequest {
     pub gusts: f64,
     /// Errors of the estimates that the controllers see.
     pub noise: bool,
-    /// Seed of gusts and errors.
+    /// A file of events while the team flies.
+    pub arrivals: Option<PathBuf>,
+    /// Events per minute by chance.
+    pub arrival_rate: f64,
+    /// Seed of gusts, errors and events by chance.
     pub seed: u64,
     /// Replaces files that are there.
     pub force: bool,
@@ -40,12 +47,24 @@ pub struct SimulateRequest {
 ///
 /// [`Failure`]; nothing is written then.
 pub fn simulate(request: &SimulateRequest) -> Result<String, Failure> {
-    let file = mission(request.file.as_deref())?;
+    let mut file = mission(request.file.as_deref())?;
+    let listed = request.arrivals.as_deref().map(crate::events::read).transpose()?.unwrap_or_default();
+    let arrivals = Arrivals { rate: request.arrival_rate, seed: request.seed };
+    let is_eventful = request.arrivals.is_some() || request.arrival_rate > 0.0;
+    if is_eventful {
+        followable(&file)?;
+    }
     let plan = search(&file, request.quiet)?;
-    let team = plan
+    let Followed { mission, plan, log } =
+        if is_eventful { follow(&file, plan, listed, arrivals)? } else { Followed::nothing(&file, plan) };
+    file.mission = mission;
+    let mut team = plan
         .fly(&file.mission, &options(request, &file), request.seed)
         .ok_or(Failure::Sampling { vehicle: 0 })?;
-    let log = events(&plan, &team);
+    for flown in &mut team {
+        flown.clearance = clearance(&file, &plan, flown);
+    }
+    let log = events(&plan, &team, log);
     let mut files = vec![OutputFile { name: "events.log".into(), content: log }];
     for flown in &team {
         let name = format!("flown-{}.csv", flown.vehicle + 1);
@@ -54,6 +73,9 @@ pub fn simulate(request: &SimulateRequest) -> Result<String, Failure> {
     files.push(OutputFile { name: "flown.svg".into(), content: picture(&file, &plan, &team)? });
     folder::write_files(&request.out, &files, request.force)?;
     let mut text = table(&team).render();
+    if is_eventful {
+        text.push_str(&stands(&plan.verify(&file.mission, &Tolerances::default())));
+    }
     for file in &files {
         let _ = writeln!(text, "wrote {}", request.out.join(&file.name).display());
     }
@@ -71,6 +93,45 @@ fn options(request: &SimulateRequest, file: &MissionFile) -> SimulationOptions {
         options = options.with_noise(SensorNoise::typical());
     }
     options
+}
+
+/// Re-planning moves circles of single targets; said before the time for a plan is spent.
+fn followable(file: &MissionFile) -> Result<(), Failure> {
+    if file.mission.merge_within > 0.0 {
+        let key = "targets.merge_within".to_owned();
+        let message = format!(
+            "{key} = {} leaves targets without a circle of their own, and events cannot be followed: set it to 0",
+            file.mission.merge_within
+        );
+        return Err(Failure::Input(vec![Problem { file: file.file.clone(), line: None, key, message }]));
+    }
+    Ok(())
+}
+
+fn stands(verification: &Verification) -> String {
+    if verification.passed() {
+        return "the plan with all its changes stands up to the independent check\n".to_owned();
+    }
+    let lines = verification.failures.iter().map(|failure| format!("  {failure}\n"));
+    format!("the plan with its changes fails the independent check:\n{}", lines.collect::<String>())
+}
+
+/// Least distance to a target minus its safe distance, each target from the moment on at which it is known.
+fn clearance(file: &MissionFile, plan: &Plan, flown: &Flown) -> f64 {
+    let known = |target: usize| {
+        let since = plan.known_since.iter().find(|&&(known, _)| known == target);
+        since.map_or(f64::NEG_INFINITY, |&(_, since)| since)
+    };
+    let mut least = f64::INFINITY;
+    for (index, target) in file.mission.targets.iter().enumerate() {
+        let safe = target.safe_distance.unwrap_or(file.mission.transition.safe_distance);
+        let skipped = ((known(index) - flown.start_time) / flown.flight.interval).ceil().max(0.0);
+        for state in flown.flight.states.iter().skip(skipped as usize) {
+            let distance = (state[0] - target.position[0]).hypot(state[1] - target.position[1]);
+            least = least.min(distance - safe);
+        }
+    }
+    least
 }
 
 fn table(team: &[Flown]) -> Table {
@@ -98,9 +159,8 @@ fn table(team: &[Flown]) -> Table {
     table
 }
 
-/// What happens in the order of time: take-offs, circles, landings, and safe distances that were broken.
-fn events(plan: &Plan, team: &[Flown]) -> String {
-    let mut events: Vec<(f64, String)> = Vec::new();
+/// What happens in the order of time: events, take-offs, circles, landings, and safe distances that were broken.
+fn events(plan: &Plan, team: &[Flown], mut events: Vec<(f64, String)>) -> String {
     for flown in team {
         let number = flown.vehicle + 1;
         let vehicle = &plan.vehicles[flown.vehicle];
@@ -113,9 +173,10 @@ fn events(plan: &Plan, team: &[Flown]) -> String {
             events.push((leg.arrival_time(), format!("vehicle {number} begins its circle around {name}")));
             events.push((leg.end_time(), format!("vehicle {number} has circled {name}")));
         }
-        let end = match flown.tracking.completed < 1.0 {
-            true => "breaks off: its simulation left all bounds",
-            false => "is back at its pad",
+        let end = match (flown.tracking.completed < 1.0, vehicle.lost_at) {
+            (true, _) => "breaks off: its simulation left all bounds",
+            (_, Some(_)) => "is simulated no further: it drops out",
+            _ => "is back at its pad",
         };
         events.push((vehicle.end_time(), format!("vehicle {number} {end}")));
         if flown.clearance < 0.0 {

@@ -27,6 +27,8 @@ pub struct VehicleRow {
     pub loiters: f64,
     /// Seconds from take-off to the return.
     pub total: f64,
+    /// Electrical energy of the flight (J).
+    pub energy: f64,
     /// Greatest speed (m/s).
     pub top_speed: f64,
     /// Greatest tilt (rad).
@@ -46,6 +48,7 @@ pub fn vehicle_table(rows: &[VehicleRow]) -> Table {
         "in transit",
         "in loiters",
         "total",
+        "energy",
         "top speed",
         "top tilt",
         "worst integrated miss",
@@ -73,6 +76,7 @@ fn cells(name: String, row: &VehicleRow) -> Vec<String> {
         format!("{:.2} s", row.transit),
         format!("{:.2} s", row.loiters),
         format!("{:.2} s", row.total),
+        format!("{:.1} kJ", 1e-3 * row.energy),
         format!("{:.2} m/s", row.top_speed),
         format!("{:.1} deg", row.top_tilt.to_degrees()),
         miss_text(&row.miss),
@@ -91,6 +95,7 @@ fn team_row(rows: &[VehicleRow]) -> VehicleRow {
         transit: sum(|row| row.transit),
         loiters: sum(|row| row.loiters),
         total: sum(|row| row.total),
+        energy: sum(|row| row.energy),
         top_speed: most(|row| row.top_speed),
         top_tilt: most(|row| row.top_tilt),
         miss: rows.iter().fold(Miss::default(), |worst, row| worst_of(worst, row.miss)),
@@ -224,6 +229,7 @@ mod tests {
             transit: 20.0,
             loiters: 10.0,
             total: 30.0,
+            energy: 4500.0,
             top_speed: 9.5,
             top_tilt: 0.7,
             miss: Miss { position: 0.001, velocity: 0.002, attitude: 0.001 },
@@ -232,7 +238,8 @@ mod tests {
 
     #[test]
     fn the_table_names_every_vehicle_and_sums_the_team() {
-        let spare = VehicleRow { length: 0.0, transit: 0.0, loiters: 0.0, total: 0.0, ..row(0, "") };
+        let spare =
+            VehicleRow { length: 0.0, transit: 0.0, loiters: 0.0, total: 0.0, energy: 0.0, ..row(0, "") };
         let text = vehicle_table(&[row(3, "3 1 4"), row(2, "2+5"), spare]).render();
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[0].starts_with("vehicle  targets") && lines[0].ends_with("worst integrated miss"));
@@ -245,6 +252,7 @@ mod tests {
             lines[5].starts_with("team     5")
                 && lines[5].contains("200.0 m")
                 && lines[5].contains("60.00 s")
+                && lines[5].contains("9.0 kJ")
         );
     }
 

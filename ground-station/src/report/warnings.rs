@@ -23,6 +23,11 @@ fn line(warning: &Warning) -> String {
         Warning::MoreVehicles { needed } => {
             format!("the mission needs about {needed} vehicles, or flights with a fresh battery each")
         }
+        Warning::Sorties { flights } => {
+            format!(
+                "one flight each is too long for endurance or battery: {flights} flights, with batteries swapped on the pads"
+            )
+        }
         Warning::Spare { vehicles } => {
             format!("{vehicles} vehicle(s) stay at the depot: there are more vehicles than routes")
         }

@@ -49,7 +49,7 @@ pub struct Trials {
 pub struct Draw(Xoshiro256PlusPlus);
 
 impl Draw {
-    fn new(seed: u64, cell: u64, trial: u64) -> Self {
+    pub(crate) fn new(seed: u64, cell: u64, trial: u64) -> Self {
         // The generator's own seeding scrambles; distinct words are enough.
         let word =
             seed ^ cell.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ trial.wrapping_mul(0xD1B5_4A32_D192_ED03);
