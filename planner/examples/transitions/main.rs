@@ -130,7 +130,7 @@ fn fly<D: Dynamics<NX, 4>, const NX: usize>(
     first: &Solution<NX, 4>,
     segments: usize,
 ) -> Result<(Solution<NX, 4>, usize), Failure> {
-    // constant controls on half as many segments again cost up to 0.03 % of time more than on these
+    // constant controls on half as many segments again cost up to 0.06 % of time more than on these
     let mesh = gathered(first, &transition.bounds, segments * 7 / 4);
     let options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(1e-4);
     let guess = Guess::from_solution(first, 4);
