@@ -130,6 +130,7 @@ fn a_vehicle_gives_way_by_further_turns_or_a_later_start() {
     let turn = std::f64::consts::TAU * plan.circles[0].radius / plan.circles[0].speed;
     let gap = 3.0 * turn;
     let mut follower = plan.vehicles[leader].clone();
+    follower.vehicle = 1 - leader;
     follower.legs.iter_mut().for_each(|leg| leg.start_time += gap);
     let legs = &mut plan.vehicles[leader].legs;
     let loiter = legs[1].loiter.as_mut().unwrap();
