@@ -3,39 +3,39 @@
 //! **Claim.** No admissible motion from one end to the other is faster than [`Agility::least_time`].
 //!
 //! *Proof.* The velocity obeys `v' = u - g z - k |v| v` with `u = f e`, where `f` lies in `[f_min, f_max]` and the unit vector
-//! `e` (the thrust axis) turns at most `w` radians per second. Let `q = T - t` be the time to go. For any function
-//! `c(q) >= 0` write the drag as `-c v + r` with the rest `r = (c - k|v|) v`. Choose any vectors `n` and `mu`, and the costate
+//! `e` (the thrust axis) turns at most `w` radians per second. Let `q = T - t` be the time to go. Choose any vector `n` and any
+//! continuous costate `lambda(q)`, and write `a = n - d lambda/dq`. Then `d/dt [n . p + lambda . v] = a . v + lambda . v'`, and
+//! integrating from start to end gives
 //!
 //! ```text
-//!     lambda(0) = mu,     d lambda/dq = n - c lambda.
-//! ```
-//!
-//! Then `d/dt [n . p + lambda . v] = lambda . (u - g z + r)`, and integrating from start to end gives
-//!
-//! ```text
-//!     n . (p_1 - p_0) + mu . v_1 - lambda(T) . v_0  =  integral of lambda . (u - g z + r) dq
-//!                                                   <= integral of  S(q, lambda) - g lambda_z + rho |lambda|  dq,
+//!     n . (p_1 - p_0) + lambda(0) . v_1 - lambda(T) . v_0
+//!         =  integral of lambda . (u - g z) + a . v - k |v| lambda . v  dq
+//!         <= integral of S(q, lambda) - g lambda_z + R(V, a, lambda)  dq,
 //! ```
 //!
 //! where `S` is the greatest `f lambda . e` over axes `e` within `w (T - q)` of the first axis and within `w q` of the last
-//! (others cannot be reached from the one, or cannot reach the other, in time), and `rho` the greatest length of `r` along any
-//! direction. A `T` for which the inequality fails is impossible. The bound is the end of an interval `[0, T)` whose every `T`
-//! is proved impossible, each part of it by some `(n, mu)`; `costate.rs` finds good ones, but any would do.
+//! (others cannot be reached from the one, or cannot reach the other, in time), and `R` the greatest `a . v - k |v| lambda . v`
+//! over velocities up to `V`. At the speed `r` that is `r |a - k r lambda|`, the square of which is a quartic in `r`: it is
+//! greatest at the first root of its derivative, of a quadratic, or at `V`. A `T` for which the inequality fails is impossible. The
+//! bound is the end of an interval `[0, T)` whose every `T` is proved impossible, each part of it by some `lambda`; `costate.rs` finds
+//! good ones, but any would do.
 //!
-//! *The rest of the drag*: where the speed is at most `V`, the component of `r` along any unit vector is at most
-//! `rho = max(c s - k s^2, (k V - c) V)` with `s = min(c/(2k), V)`. `V(q)` is the least of what can be reached from the first
-//! velocity in `T - q`, what can be slowed down to the last velocity in `q`, and what no thrust exceeds: see `speeds.rs`.
+//! *The speed*: `V(q)` is the least of what can be reached from the first velocity in `T - q`, what can be slowed down to the
+//! last velocity in `q`, and what no thrust exceeds: see `speeds.rs`.
+//!
+//! *The costate* of the linearised drag, `d lambda/dq = n - C lambda` from `lambda(0) = mu`: for a cruise at the speed `s`,
+//! `C = 2 k s` along it and `k s` across it loses nothing, since `R` is then attained by the cruise itself.
 //!
 //! *Wind*: in the frame that moves with a steady wind `w` the air is still and thrust, gravity and attitude are what they are.
 //! All of the above holds there, with `v - w` for both velocities and `p_1 - p_0 - w T` for the offset, which is linear in `T`.
 //!
-//! *Between grid points in `q`*: in a cell with constant `c`, `lambda` moves on a straight line in `E = exp(-c q)`, and `S` with
-//! its two cones held as wide as anywhere in the cell, like `|lambda|`, is convex in `lambda`. So its mean over a cell is at
-//! most the chord's, whose weights are exact.
+//! *Between grid points in `q`*: in a cell `lambda` moves on a straight line and `a` is constant. `S` with its two cones held as
+//! wide as anywhere in the cell and `R` with the greatest `V` are convex in `lambda`, as suprema of linear functions. So their
+//! mean over a cell is at most that of the values at its ends.
 //!
 //! *Between grid points in `T`*: for all `T` in `[T_a, T_b]` the cones and speeds are those of `T_b`, where they are widest,
-//! the last cell `[T_a, T_b]` counts only if it is positive, and `lambda(T) . v_0` is linear in `E` there, as the wind's part of
-//! the offset is in `T`: their greatest values are at one of the ends.
+//! the last cell `[T_a, T_b]` counts only if it is positive, and `lambda(T) . v_0` is linear in `T` there, as the wind's part of
+//! the offset is: their greatest values are at one of the ends.
 
 use super::costate::Costate;
 use super::speeds::Speeds;

@@ -10,12 +10,19 @@ type Vector6 = SVector<f64, 6>;
 type Matrix6 = SMatrix<f64, 6, 6>;
 type Matrix3 = SMatrix<f64, 3, 3>;
 
-/// `lambda(0) = mu`, `d lambda/dq = n - c lambda` over the time to go `q`.
+/// `lambda(0) = mu`, `d lambda/dq = n - C lambda` over the time to go `q`, on a straight line within each cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Costate {
     /// Weight of the position.
     n: Vector3<f64>,
     /// Weight of the last velocity.
+    mu: Vector3<f64>,
+}
+
+/// What `n` and `mu` weigh in `lambda`.
+#[derive(Debug, Clone, Copy)]
+struct Weights {
+    n: Vector3<f64>,
     mu: Vector3<f64>,
 }
 
@@ -27,8 +34,8 @@ impl Costate {
         Some(Self { n, mu: (Vector3::z() * 0.3 - n) * half })
     }
 
-    fn at(&self, [a, b]: [f64; 2]) -> Vector3<f64> {
-        self.n * a + self.mu * b
+    fn at(&self, weights: &Weights) -> Vector3<f64> {
+        self.n.component_mul(&weights.n) + self.mu.component_mul(&weights.mu)
     }
 
     /// Whether no `T` in `[T_a, T_b]` is possible; exact but for rounding, see the proof in `agility.rs`.
@@ -45,18 +52,19 @@ impl Costate {
         let mut starts = f64::NEG_INFINITY;
         let mut size = self.mu.norm();
         for cell in cells(agility, speeds, [first, last]) {
-            let ends = cell.weights.map(|weights| self.at(weights));
-            let free = ends.map(|lambda| cell.rho * lambda.norm() - GRAVITY * lambda.z);
+            let ends = cell.weights.map(|weights| self.at(&weights));
+            let a = self.n - (ends[1] - ends[0]) / cell.length;
+            let free = ends.map(|lambda| cell.coasting(agility, &a, &lambda).0 - GRAVITY * lambda.z);
             let thrust = (0..2)
                 .map(|end| ends.map(|lambda| cell.thrust(agility, passage, end, &lambda)))
                 .map(|thrust| [free[0] + thrust[0], free[1] + thrust[1]])
-                .min_by(|a, b| cell.chord(*a).total_cmp(&cell.chord(*b)))
+                .min_by(|a, b| (a[0] + a[1]).total_cmp(&(b[0] + b[1])))
                 .unwrap_or_default();
             if cell.last {
                 most += cell.length * thrust[0].max(thrust[1]).max(0.0);
                 starts = ends[0].dot(&v_0).max(ends[1].dot(&v_0));
             } else {
-                most += cell.length * cell.chord(thrust);
+                most += cell.length * 0.5 * (thrust[0] + thrust[1]);
             }
             size = size.max(ends[1].norm());
         }
@@ -109,25 +117,29 @@ impl Costate {
         cells: &[Cell],
     ) -> (f64, Vector6, Matrix6) {
         let [v_0, v_1] = passage.velocities;
-        let [a, b] = cells.last().map_or([0.0, 1.0], |cell| cell.weights[1]);
-        let mut value = self.at([a, b]).dot(&v_0) - self.mu.dot(&v_1) - self.n.dot(offset);
-        let mut gradient = stacked(&(v_0 * a - offset), &(v_0 * b - v_1));
+        let start = cells.last().map_or(Weights::AT_THE_END, |cell| cell.weights[1]);
+        let mut value = self.at(&start).dot(&v_0) - self.mu.dot(&v_1) - self.n.dot(offset);
+        let mut gradient =
+            stacked(&(v_0.component_mul(&start.n) - offset), &(v_0.component_mul(&start.mu) - v_1));
         let mut hessian = Matrix6::zeros();
         for cell in cells {
             let h = cell.length;
-            let weights: [f64; 2] = std::array::from_fn(|i| 0.5 * (cell.weights[0][i] + cell.weights[1][i]));
-            let lambda = self.at(weights);
+            let weights = cell.middle();
+            let lambda = self.at(&weights);
             let (thrust, slope, curve) = cell.expand(agility, passage, &lambda);
             let norm = lambda.norm().max(1e-9);
-            value += h * (thrust + cell.rho * norm - GRAVITY * lambda.z);
-            let slope = slope + lambda * (cell.rho / norm) - Vector3::z() * GRAVITY;
+            let (coasting, velocity) = cell.coasting(agility, &cell.linear.component_mul(&lambda), &lambda);
+            value += h * (thrust + coasting - GRAVITY * lambda.z);
+            let drag = velocity.component_mul(&cell.linear) - velocity * (agility.drag * velocity.norm());
+            let slope = slope + drag - Vector3::z() * GRAVITY;
             let across = Matrix3::identity() - lambda * lambda.transpose() / (norm * norm);
-            let curve = curve + across * (cell.rho / norm);
-            gradient += stacked(&(slope * (h * weights[0])), &(slope * (h * weights[1])));
-            for (row, wr) in weights.into_iter().enumerate() {
-                for (column, wc) in weights.into_iter().enumerate() {
+            let curve = (curve + across * (coasting / (norm * norm))) * h;
+            let both = [weights.n, weights.mu];
+            gradient += stacked(&(slope.component_mul(&both[0]) * h), &(slope.component_mul(&both[1]) * h));
+            for (row, wr) in both.iter().enumerate() {
+                for (column, wc) in both.iter().enumerate() {
                     let mut block = hessian.fixed_view_mut::<3, 3>(3 * row, 3 * column);
-                    block += curve * (h * wr * wc);
+                    block += curve.component_mul(&(wr * wc.transpose()));
                 }
             }
         }
@@ -153,7 +165,7 @@ fn cells(agility: &Agility, speeds: &Speeds, [first, last]: [f64; 2]) -> impl It
         let node = move |i: usize| from + (to - from) * i as f64 / n as f64;
         (0..n).map(move |i| ([node(i), node(i + 1)], false))
     });
-    let mut weights = [0.0, 1.0];
+    let mut weights = Weights::AT_THE_END;
     spans.chain(std::iter::once(([first, last], true))).map(move |(span, is_last)| {
         let cell = Cell::new(agility, speeds, weights, span, last, is_last);
         weights = cell.weights[1];
@@ -164,55 +176,89 @@ fn cells(agility: &Agility, speeds: &Speeds, [first, last]: [f64; 2]) -> impl It
 /// Linear part of the drag, as a share of what it is at the greatest speed: both parts of `rho` are equal then.
 const LINEAR: f64 = 2.0 * (std::f64::consts::SQRT_2 - 1.0);
 
-/// A stretch of the time to go, with drag and cones as loose as anywhere in it.
+/// A stretch of the time to go, with speeds and cones as loose as anywhere in it.
 struct Cell {
     /// How long it is (s).
     length: f64,
     /// Whether it is the last one.
     last: bool,
-    /// The weights of `n` and `mu` in `lambda` at both of its ends.
-    weights: [[f64; 2]; 2],
-    /// What the linear part leaves of the drag (m/s^2).
-    rho: f64,
+    /// `lambda` at both of its ends.
+    weights: [Weights; 2],
+    /// Diagonal of `C`, by which `lambda` was chosen (1/s).
+    linear: Vector3<f64>,
+    /// The greatest speed (m/s).
+    speed: f64,
     /// Cosine and sine of the cones' half angles, around the first and the last axis.
     cones: [[f64; 2]; 2],
-    /// Weight of the second end in the mean of a chord.
-    second: f64,
+}
+
+impl Weights {
+    /// `lambda(0) = mu`.
+    const AT_THE_END: Self = Self { n: Vector3::new(0.0, 0.0, 0.0), mu: Vector3::new(1.0, 1.0, 1.0) };
+
+    /// After `length` more of the time to go under `d lambda/dq = n - C lambda`.
+    fn after(&self, linear: &Vector3<f64>, length: f64) -> Self {
+        let left = linear.map(|c| (-c * length).exp());
+        let growth = linear.map(|c| if c * length < 1e-9 { length } else { -(-c * length).exp_m1() / c });
+        Self { n: self.n.component_mul(&left) + growth, mu: self.mu.component_mul(&left) }
+    }
 }
 
 impl Cell {
     fn new(
         agility: &Agility,
         speeds: &Speeds,
-        weights: [f64; 2],
+        weights: Weights,
         [from, to]: [f64; 2],
         time: f64,
         last: bool,
     ) -> Self {
         let Speed { most, likely } = speeds.within([from, to], time);
         let k = agility.drag;
-        // Any line would do. Speeding up, the tangent at the right speed loses nothing; slowing down, drag helps, and the
-        // chord is nearest.
-        let c = likely.map_or(0.0, |s| 2.0 * k * s).max(LINEAR * k * most);
-        let s = if k > 0.0 { (c / (2.0 * k)).min(most) } else { 0.0 };
-        let rho = (c * s - k * s * s).max((k * most - c) * most);
-        let length = to - from;
-        let width = c * length;
-        let minus = -(-width).exp_m1();
-        let growth = if width < 1e-9 { length } else { minus / c };
-        // The mean of (E_a - E)/(E_a - E_b) over the cell: (1 - (1 - exp(-w))/w)/(1 - exp(-w)), by its series for small w.
-        let second = if width < 1e-3 { 0.5 + width / 12.0 } else { (1.0 - minus / width) / minus };
+        // Any C would do. In a flight at speed s along the horizontal, the gradient of the drag k|v|v, 2 k s along it and k s
+        // across it, loses nothing; slowing down, drag helps, and its chord is nearest.
+        let chord = LINEAR * k * most;
+        let [along, across] =
+            likely.map_or([chord; 2], |s| [chord.max(2.0 * k * s), chord.max(2.0 * k * s) * 0.5]);
+        let linear = Vector3::new(along, along, across);
         let cone = |free: f64| {
             let angle = agility.turn_rate * free;
             if angle < PI { [angle.cos(), angle.sin()] } else { [-1.0, 0.0] }
         };
-        let next = [growth + weights[0] * (1.0 - minus), weights[1] * (1.0 - minus)];
-        Self { length, last, weights: [weights, next], rho, cones: [cone(time - from), cone(to)], second }
+        let length = to - from;
+        let weights = [weights, weights.after(&linear, length)];
+        Self { length, last, weights, linear, speed: most, cones: [cone(time - from), cone(to)] }
     }
 
-    /// Bound on the mean over the cell of a convex function with these values at both ends.
-    fn chord(&self, [a, b]: [f64; 2]) -> f64 {
-        a * (1.0 - self.second) + b * self.second
+    /// About half-way.
+    fn middle(&self) -> Weights {
+        let [a, b] = &self.weights;
+        Weights { n: (a.n + b.n) * 0.5, mu: (a.mu + b.mu) * 0.5 }
+    }
+
+    /// The greatest `a . v - k |v| lambda . v` over velocities up to the greatest speed, and where it is.
+    fn coasting(&self, agility: &Agility, a: &Vector3<f64>, lambda: &Vector3<f64>) -> (f64, Vector3<f64>) {
+        let k = agility.drag;
+        if k <= 0.0 {
+            return (0.0, Vector3::zeros());
+        }
+        // At the speed r it is r |a - k r lambda|, greatest at the first root of its derivative or at the greatest speed.
+        let at = |r: f64| {
+            let across = a - lambda * (k * r);
+            (r * across.norm(), across, r)
+        };
+        let (aa, ab, bb) = (a.norm_squared(), k * a.dot(lambda), k * k * lambda.norm_squared());
+        let discriminant = 9.0 * ab * ab - 8.0 * aa * bb;
+        let fastest = at(self.speed);
+        let root = 2.0 * aa / (3.0 * ab + discriminant.max(0.0).sqrt());
+        let best = if discriminant >= 0.0 && ab > 0.0 && root < self.speed {
+            let slower = at(root);
+            if slower.0 > fastest.0 { slower } else { fastest }
+        } else {
+            fastest
+        };
+        let (value, across, r) = best;
+        (value, across.try_normalize(0.0).map_or(Vector3::zeros(), |direction| direction * r))
     }
 
     /// The greatest `f lambda . e` over thrusts and the axes in one of the cones.
