@@ -3,8 +3,8 @@
 //! `cargo run --release -p uav-planner --features rayon --example closed_loop -- [RUNS] [WIND] [MARGIN] [BUDGET]`
 //!
 //! `RUNS` seeded flights (default 1000) of eight targets and three vehicles in gusts of the standard deviation `WIND` (m/s,
-//! default 3) with sensor noise. The plan keeps `MARGIN` (m, default 0.5) more than the safe distance, leaves the controller all
-//! but the share `BUDGET` (default 0.7) of the thrust, and uses the model with body dynamics, which the controller can follow
+//! default 3) with sensor noise. The plan keeps `MARGIN` (m, default 0.75) more than the safe distance, leaves the controller all
+//! but the share `BUDGET` (default 0.6) of the thrust, and uses the model with body dynamics, which the controller can follow
 //! to a decimetre in still air.
 
 use planner::quad_dynamics::nalgebra::Vector3;
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let numbers: Vec<f64> = std::env::args().skip(1).map(|word| word.parse()).collect::<Result<_, _>>()?;
     let number = |i: usize, default: f64| numbers.get(i).copied().unwrap_or(default);
     let (runs, wind) = (number(0, 1000.0) as u64, number(1, 3.0));
-    let (margin, budget) = (number(2, 0.5), number(3, 0.7));
+    let (margin, budget) = (number(2, 0.75), number(3, 0.6));
 
     let vehicle = Vehicle::new(VehicleParameters::survey_450())?;
     let mut mission = Mission::new(vehicle, 3, TARGETS.map(Target::at).to_vec());

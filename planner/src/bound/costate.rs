@@ -218,8 +218,7 @@ impl Cell {
         // Any C would do. In a flight at speed s along the horizontal, the gradient of the drag k|v|v, 2 k s along it and k s
         // across it, loses nothing; slowing down, drag helps, and its chord is nearest.
         let chord = LINEAR * k * most;
-        let [along, across] =
-            likely.map_or([chord; 2], |s| [chord.max(2.0 * k * s), chord.max(2.0 * k * s) * 0.5]);
+        let [along, across] = likely.map_or([chord; 2], |s| [2.0, 1.0].map(|share| chord.max(share * k * s)));
         let linear = Vector3::new(along, along, across);
         let cone = |free: f64| {
             let angle = agility.turn_rate * free;
