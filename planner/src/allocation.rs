@@ -4,6 +4,7 @@ use crate::bound::{Drift, Envelope, LegTimes};
 use crate::circles::Orbit;
 use crate::error::Error;
 use crate::mission::{Mission, Objective, Pipeline};
+use crate::plan::{Plan, VehiclePlan};
 use mtsp::{Problem, assign};
 use nalgebra::Vector2;
 
@@ -36,19 +37,13 @@ pub(crate) fn routes(
     Ok(solution.routes.into_iter().map(to_circles).collect())
 }
 
-/// `share` of the cost of the longest route.
-pub(crate) fn share_of_longest(
-    mission: &Mission,
-    orbits: &[Orbit],
-    envelope: &Envelope,
-    routes: &[&[usize]],
-    share: f64,
-) -> Option<f64> {
+/// The cost of a plan's longest route.
+pub(crate) fn longest(mission: &Mission, orbits: &[Orbit], envelope: &Envelope, plan: &Plan) -> Option<f64> {
     let (legs, service) = legs(mission, orbits, envelope);
     let problem = Problem::new(&legs, orbits.len()).ok()?.with_service(service).ok()?;
-    let nodes = |route: &&[usize]| route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
-    let costs = routes.iter().map(nodes).map(|route| problem.route_length(0, &route));
-    Some(share * costs.fold(0.0, f64::max))
+    let nodes = |planned: &VehiclePlan| planned.route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
+    let costs = plan.vehicles.iter().map(nodes).map(|route| problem.route_length(0, &route));
+    Some(costs.fold(0.0, f64::max))
 }
 
 /// Routes that cost at most `limit`, as few as were found, with their costs; `None` if there are none.

@@ -16,7 +16,8 @@ pub struct Flown {
     pub start_time: f64,
     /// Planned against flown.
     pub tracking: Tracking,
-    /// Least horizontal distance to a target minus its safe distance (m), at the recorded states; infinite without targets.
+    /// Least horizontal distance to a target minus its safe distance (m), at the recorded states, each target from the moment on at
+    /// which it is known ([`Plan::known_since`]); infinite without targets.
     pub clearance: f64,
     /// The recorded flight.
     pub flight: Flight,
@@ -58,21 +59,22 @@ impl Plan {
                 vehicle,
                 start_time: planned.start_time(),
                 tracking: flight.tracking,
-                clearance: clearance(mission, &flight),
+                clearance: self.clearance(mission, &flight, planned.start_time()),
                 flight,
             });
         }
         Some(team)
     }
-}
 
-fn clearance(mission: &Mission, flight: &Flight) -> f64 {
-    let to_target = |x: f64, y: f64| {
-        let distance = |i: usize| {
+    fn clearance(&self, mission: &Mission, flight: &Flight, start_time: f64) -> f64 {
+        let to_target = |i: usize| {
             let [east, north] = mission.targets[i].position;
-            (x - east).hypot(y - north) - mission.safe_distance(i)
+            let since = self.known_since.iter().find(|&&(target, _)| target == i);
+            let unknown = since.map_or(0.0, |&(_, since)| (since - start_time) / flight.interval);
+            let known = flight.states.iter().skip(unknown.ceil().max(0.0) as usize);
+            let distances = known.map(|state| (state[0] - east).hypot(state[1] - north));
+            distances.fold(f64::INFINITY, f64::min) - mission.safe_distance(i)
         };
-        (0..mission.targets.len()).map(distance).fold(f64::INFINITY, f64::min)
-    };
-    flight.states.iter().map(|state| to_target(state[0], state[1])).fold(f64::INFINITY, f64::min)
+        (0..mission.targets.len()).map(to_target).fold(f64::INFINITY, f64::min)
+    }
 }

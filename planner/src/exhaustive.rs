@@ -1,13 +1,12 @@
 //! Certificates against all plans of small missions: every split, order, direction and entry, each leg solved.
 
 use crate::airs::Airs;
-use crate::bound::Envelope;
 use crate::entry;
 use crate::legs::Airspace;
 use crate::mission::{Entries, Mission, Model, Objective, Target};
-use crate::options::{Options, Watch};
+use crate::options::Options;
 use crate::plan::{Entry, VehiclePlan};
-use crate::planning::{envelope, plan};
+use crate::planning::plan;
 use quad_dynamics::{Motion, Vehicle, VehicleParameters};
 
 /// Times of all legs (s), infinite where the solver finds none.
@@ -26,9 +25,7 @@ impl Times {
         let pads = mission.pads();
         let airs = Airs::new(&plan(mission, &Options::default()).unwrap(), mission);
         let air = airs.at(0.0);
-        let envelope: Envelope = envelope(mission, &air.orbits);
-        let (pilot, watch) = (air.pilot.clone(), Watch::new(Options::default(), 0));
-        let airspace = Airspace { mission, orbits: &air.orbits, pilot, envelope, watch };
+        let airspace = Airspace::of(air);
         let entries = entry::sampled(mission.transition.entries);
         let circles = 0..air.orbits.len();
         let to = |here: &Motion, circle: usize, entry: Entry| {

@@ -1,12 +1,14 @@
 //! The legs of one route: the paper's Algorithm 1 from pad to circle to circle to pad.
 
+use crate::airs::Air;
 use crate::bound::Envelope;
 use crate::circles::Orbit;
 use crate::entry::{self, Entrance};
 use crate::error::Error;
 use crate::mission::{Entries, Mission};
-use crate::options::Watch;
+use crate::options::{Options, Watch};
 use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
+use crate::planning::envelope;
 use crate::race::{Arrival, Race};
 use crate::transition::{Detail, Goal, Hint, Pilot, Unsolved};
 use quad_dynamics::Motion;
@@ -22,6 +24,19 @@ pub(crate) struct Airspace<'a> {
     pub pilot: Pilot,
     pub envelope: Envelope,
     pub watch: Watch<'a>,
+}
+
+impl<'a> Airspace<'a> {
+    /// Of one wind, watched by nobody.
+    pub(crate) fn of(air: &'a Air) -> Self {
+        Self {
+            mission: &air.mission,
+            orbits: &air.orbits,
+            pilot: air.pilot.clone(),
+            envelope: envelope(&air.mission, &air.orbits),
+            watch: Watch::new(Options::default(), 0),
+        }
+    }
 }
 
 impl Airspace<'_> {

@@ -50,9 +50,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     let mut plan = planned(&airspace(&flights), flights)?;
     let mut share = share_in_reach(&plan);
     if share < 1.0 && mission.swap_time.is_some() {
-        let routes: Vec<&[usize]> = plan.vehicles.iter().map(|planned| &planned.route[..]).collect();
-        let longest = allocation::share_of_longest(mission, &orbits, &envelope, &routes, 1.0);
-        let mut limit = longest.unwrap_or(0.0);
+        let mut limit = allocation::longest(mission, &orbits, &envelope, &plan).unwrap_or(0.0);
         // Solved flights scatter around the routes' costs: a limit that was too loose is tightened.
         for _ in 0..MOST_LIMITS {
             limit *= share;
@@ -196,8 +194,7 @@ fn more_vehicles(
     envelope: &Envelope,
     share: f64,
 ) -> Option<Warning> {
-    let routes: Vec<&[usize]> = plan.vehicles.iter().map(|planned| &planned.route[..]).collect();
-    let limit = allocation::share_of_longest(mission, orbits, envelope, &routes, share)?;
+    let limit = share * allocation::longest(mission, orbits, envelope, plan)?;
     let needed = allocation::fewest_routes(mission, orbits, envelope, limit)?.len();
     // A longest route that is badly balanced may be too long although there are vehicles enough.
     Some(Warning::MoreVehicles { needed: needed.max(1) })

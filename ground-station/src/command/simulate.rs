@@ -58,12 +58,9 @@ pub fn simulate(request: &SimulateRequest) -> Result<String, Failure> {
     let Followed { mission, plan, log } =
         if is_eventful { follow(&file, plan, listed, arrivals)? } else { Followed::nothing(&file, plan) };
     file.mission = mission;
-    let mut team = plan
+    let team = plan
         .fly(&file.mission, &options(request, &file), request.seed)
         .ok_or(Failure::Sampling { vehicle: 0 })?;
-    for flown in &mut team {
-        flown.clearance = clearance(&file, &plan, flown);
-    }
     let log = events(&plan, &team, log);
     let mut files = vec![OutputFile { name: "events.log".into(), content: log }];
     for flown in &team {
@@ -114,24 +111,6 @@ fn stands(verification: &Verification) -> String {
     }
     let lines = verification.failures.iter().map(|failure| format!("  {failure}\n"));
     format!("the plan with its changes fails the independent check:\n{}", lines.collect::<String>())
-}
-
-/// Least distance to a target minus its safe distance, each target from the moment on at which it is known.
-fn clearance(file: &MissionFile, plan: &Plan, flown: &Flown) -> f64 {
-    let known = |target: usize| {
-        let since = plan.known_since.iter().find(|&&(known, _)| known == target);
-        since.map_or(f64::NEG_INFINITY, |&(_, since)| since)
-    };
-    let mut least = f64::INFINITY;
-    for (index, target) in file.mission.targets.iter().enumerate() {
-        let safe = target.safe_distance.unwrap_or(file.mission.transition.safe_distance);
-        let skipped = ((known(index) - flown.start_time) / flown.flight.interval).ceil().max(0.0);
-        for state in flown.flight.states.iter().skip(skipped as usize) {
-            let distance = (state[0] - target.position[0]).hypot(state[1] - target.position[1]);
-            least = least.min(distance - safe);
-        }
-    }
-    least
 }
 
 fn table(team: &[Flown]) -> Table {

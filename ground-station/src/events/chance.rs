@@ -32,7 +32,7 @@ impl Chance {
     /// Places are uniform in the rectangle of the targets and the depot. A place that is too close to a target is left to the
     /// planner to refuse.
     pub fn next(&mut self, mission: &Mission, until: f64) -> Option<TimedEvent> {
-        self.time -= self.draw.between(0.0, 1.0).mul_add(-1.0, 1.0).ln() / self.rate;
+        self.time -= (1.0 - self.draw.between(0.0, 1.0)).ln() / self.rate;
         // False for a rate of 0 too: the time is then infinite.
         if self.time < until {
             Some(TimedEvent { time: self.time, event: self.event(mission) })

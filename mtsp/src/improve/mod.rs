@@ -128,10 +128,10 @@ fn run<M: Metric>(
     } else {
         improve(problem, &Computed::new(problem), start, bounds, options, proceed)
     };
-    if let Ok(solution) = Solution::with_bounds(problem, routes.clone(), bounds) {
-        return Ok(solution);
+    match Solution::with_bounds(problem, routes.clone(), bounds) {
+        Err(Error::LimitExceeded { .. }) => {}
+        other => return other,
     }
-    // Only a limit can have been missed; what the routes measure without limits says by how much.
     let measured = check(&problem.without_restrictions(), &routes)?;
     let excesses = measured.lengths.iter().enumerate().map(|(v, length)| length - problem.limit(v));
     let excess = excesses.fold(f64::NEG_INFINITY, f64::max);

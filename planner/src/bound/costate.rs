@@ -173,7 +173,8 @@ fn cells(agility: &Agility, speeds: &Speeds, [first, last]: [f64; 2]) -> impl It
     })
 }
 
-/// Linear part of the drag, as a share of what it is at the greatest speed: both parts of `rho` are equal then.
+/// `C` while slowing down, as a share of `k` times the greatest speed `V`: `c = LINEAR k V` makes the greatest
+/// `c s - k s^2` of a speed `s` along `lambda` equal to the `(k V - c) V` of the greatest against it.
 const LINEAR: f64 = 2.0 * (std::f64::consts::SQRT_2 - 1.0);
 
 /// A stretch of the time to go, with speeds and cones as loose as anywhere in it.

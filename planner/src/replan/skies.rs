@@ -2,9 +2,7 @@
 
 use crate::airs::Airs;
 use crate::legs::Airspace;
-use crate::options::{Options, Watch};
 use crate::plan::{Leg, VehiclePlan};
-use crate::planning::envelope;
 use quad_dynamics::Motion;
 
 pub(super) struct Skies<'a> {
@@ -14,14 +12,7 @@ pub(super) struct Skies<'a> {
 
 impl<'a> Skies<'a> {
     pub(super) fn new(airs: &'a Airs<'a>) -> Self {
-        let airspaces = airs.iter().map(|air| Airspace {
-            mission: &air.mission,
-            orbits: &air.orbits,
-            pilot: air.pilot.clone(),
-            envelope: envelope(&air.mission, &air.orbits),
-            watch: Watch::new(Options::default(), 0),
-        });
-        Self { airs, airspaces: airspaces.collect() }
+        Self { airs, airspaces: airs.iter().map(Airspace::of).collect() }
     }
 
     /// The airspace of a leg that starts at a time (s).
