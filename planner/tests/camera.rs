@@ -1,5 +1,6 @@
 //! What the plan says of the camera, against the camera's own geometry at samples of the plan.
 
+use planner::quad_dynamics::nalgebra::Vector3;
 use planner::quad_dynamics::{Camera, Vehicle, VehicleParameters};
 use planner::{CameraSettings, Direction, Entries, LoiterYaw, Mission, Options, Plan, Target, Warning, plan};
 use std::f64::consts::FRAC_PI_2;
@@ -22,32 +23,32 @@ fn planned(mission: &Mission) -> Plan {
     plan(mission, &Options::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// Between two looks at a flight (s).
+const STEP: f64 = 0.01;
+
 /// The share from sampled attitudes, with the picture's edges by plain trigonometry; the camera is mounted along body x, tilted.
 fn sampled_share(plan: &Plan, mission: &Mission, target: usize, tilt: f64, view: [f64; 2]) -> f64 {
     let [east, north] = mission.targets[target].position;
     let (mut seen, mut all) = (0, 0);
     for (vehicle, planned) in plan.vehicles.iter().enumerate() {
         let serves = |circle: usize| plan.circles[circle].members.contains(&target);
-        for leg in planned.legs.iter().filter(|leg| leg.loiter.is_some_and(|loiter| serves(loiter.circle))) {
-            let (start, duration) = (leg.arrival_time(), leg.loiter.unwrap().duration);
-            for i in 0..400 {
-                let time = start + duration * (f64::from(i) + 0.5) / 400.0;
-                let sample = plan.sample(mission, vehicle, time).unwrap();
-                let [x, y, z] = sample.position;
-                let [w, a, b, c] = sample.attitude;
-                let s = [east - x, north - y, TARGET_HEIGHT - z];
-                // Rows of the rotation from world to body: forward, left, up.
-                let forward = [1.0 - 2.0 * (b * b + c * c), 2.0 * (a * b + w * c), 2.0 * (a * c - w * b)];
-                let left = [2.0 * (a * b - w * c), 1.0 - 2.0 * (a * a + c * c), 2.0 * (b * c + w * a)];
-                let up = [2.0 * (a * c + w * b), 2.0 * (b * c - w * a), 1.0 - 2.0 * (a * a + b * b)];
-                let along = |axis: [f64; 3]| axis[0] * s[0] + axis[1] * s[1] + axis[2] * s[2];
-                let ahead = along(forward) * tilt.cos() - along(up) * tilt.sin();
-                let above = along(forward) * tilt.sin() + along(up) * tilt.cos();
-                let within =
-                    |offset: f64, view: f64| ahead > 0.0 && offset.abs() <= ahead * (0.5 * view).tan();
-                seen += usize::from(within(along(left), view[0]) && within(above, view[1]));
-                all += 1;
+        let serving =
+            planned.legs.iter().filter(|leg| leg.loiter.is_some_and(|loiter| serves(loiter.circle)));
+        let spans: Vec<[f64; 2]> = serving.map(|leg| [leg.arrival_time(), leg.end_time()]).collect();
+        for (i, motion) in plan.motions(mission, vehicle, STEP).unwrap().iter().enumerate() {
+            let time = planned.start_time() + i as f64 * STEP;
+            if !spans.iter().any(|&[from, to]| (from..=to).contains(&time)) {
+                continue;
             }
+            let s = Vector3::new(east, north, TARGET_HEIGHT) - motion.position;
+            // Rows of the rotation from world to body: forward, left, up.
+            let [forward, left, up] =
+                [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| (motion.attitude * axis).dot(&s));
+            let ahead = forward * tilt.cos() - up * tilt.sin();
+            let above = forward * tilt.sin() + up * tilt.cos();
+            let within = |offset: f64, view: f64| ahead > 0.0 && offset.abs() <= ahead * (0.5 * view).tan();
+            seen += usize::from(within(left, view[0]) && within(above, view[1]));
+            all += 1;
         }
     }
     seen as f64 / all as f64
