@@ -125,3 +125,7 @@ pub use spanning_tree::minimum_spanning_tree;
 pub use tour::{Ends, Path, Tour};
 pub use validate::validate;
 pub use workspace::Workspace;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -65,3 +65,7 @@ pub use error::{Error, OptionName};
 pub use kmeans::{KMeans, KMeansOptions, KMeansStatus, kmeans, kmeans_weighted};
 pub use linkage::{Dendrogram, Linkage, Partition, Step, clink, linkage, linkage_condensed, merge_within};
 pub use online::Online;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

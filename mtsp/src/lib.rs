@@ -21,7 +21,7 @@
 //!
 //! # Example
 //! ```
-//! use christofides::Points;
+//! use mtsp::christofides::Points;
 //! use mtsp::{Objective, Options, Problem, solve};
 //!
 //! let nodes = [[0.0, 0.0], [30.0, 0.0], [0.0, 40.0], [-35.0, 5.0], [10.0, 10.0]]; // the depot first
@@ -65,6 +65,8 @@ mod procedures;
 mod solution;
 mod split;
 
+pub use christofides;
+
 pub use check::{LIMIT_TOLERANCE, Measured, check};
 pub use cluster_first::assign;
 pub use error::{Error, List, Remedy};
@@ -77,3 +79,7 @@ pub use problem::{End, Problem};
 pub use procedures::{RoundsCost, procedure_1, procedure_2};
 pub use solution::Solution;
 pub use split::{k_splitour, split};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

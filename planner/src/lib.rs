@@ -101,3 +101,7 @@ pub use planning::plan;
 pub use quad_dynamics::{Direction, LoiterYaw, ShapingLimits};
 pub use replan::{Event, Replanner, Update};
 pub use verify::{Failure, LegCheck, Tolerances, Verification};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -132,3 +132,7 @@ pub use rk4::{rk4, rk4_step, rk4_step_unit};
 pub use shaping::ShapingLimits;
 pub use simulation::{Flight, SimulationOptions, Tracking, simulate, simulate_batch};
 pub use vehicle::Vehicle;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

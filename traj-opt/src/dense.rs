@@ -46,6 +46,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 }
 
 /// Multiplication and addition in one instruction, which only kernels may use: elsewhere it is a slow function call.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[derive(Clone, Copy)]
 pub(crate) struct Fused;
 
@@ -53,6 +54,7 @@ pub(crate) struct Fused;
 #[derive(Clone, Copy)]
 pub(crate) struct Separate;
 
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 impl Arithmetic for Fused {
     #[inline(always)]
     fn madd(a: f64, b: f64, c: f64) -> f64 {
