@@ -4,6 +4,7 @@ use crate::bound::{Drift, Envelope, LegTimes};
 use crate::circles::Orbit;
 use crate::error::Error;
 use crate::mission::{Mission, Objective, Pipeline};
+use crate::options::Options;
 use crate::plan::{Plan, VehiclePlan};
 use mtsp::{Problem, assign};
 use nalgebra::Vector2;
@@ -15,54 +16,85 @@ const RESTARTS: usize = 10;
 /// what longer runs gain.
 const ITERATIONS_PER_TARGET: u64 = 1000;
 
-/// The circles of each vehicle in the order of their visits; spare vehicles get none.
-pub(crate) fn routes(
-    mission: &Mission,
-    orbits: &[Orbit],
-    envelope: &Envelope,
-) -> Result<Vec<Vec<usize>>, Error> {
-    let (legs, service) = legs(mission, orbits, envelope);
-    let problem = Problem::new(&legs, mission.fleet.vehicles)?.with_service(service)?;
-    let solution = match mission.pipeline {
-        Pipeline::Paper => {
-            let clusters = mission.fleet.vehicles.min(orbits.len());
-            let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
-            let centres: Vec<[f64; 2]> = orbits.iter().map(|orbit| orbit.circle.centre).collect();
-            let labels = cluster::kmeans(&centres, clusters, &options).map(|found| found.labels)?;
-            assign(&problem, &labels)?
-        }
-        Pipeline::Optimised => mtsp::solve(&problem, &search(mission, orbits.len()))?,
-    };
-    let to_circles = |route: Vec<usize>| route.into_iter().map(|node| node - 1).collect();
-    Ok(solution.routes.into_iter().map(to_circles).collect())
+/// The routing problem of a mission, and how long to search.
+pub(crate) struct Routing<'a> {
+    mission: &'a Mission,
+    orbits: &'a [Orbit],
+    legs: LegTimes,
+    service: Vec<f64>,
+    search: mtsp::Options,
+    watch: Options<'a>,
 }
 
-/// The cost of a plan's longest route.
-pub(crate) fn longest(mission: &Mission, orbits: &[Orbit], envelope: &Envelope, plan: &Plan) -> Option<f64> {
-    let (legs, service) = legs(mission, orbits, envelope);
-    let problem = Problem::new(&legs, orbits.len()).ok()?.with_service(service).ok()?;
-    let nodes = |planned: &VehiclePlan| planned.route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
-    let costs = plan.vehicles.iter().map(nodes).map(|route| problem.route_length(0, &route));
-    Some(costs.fold(0.0, f64::max))
+impl<'a> Routing<'a> {
+    pub(crate) fn new(
+        mission: &'a Mission,
+        orbits: &'a [Orbit],
+        envelope: &Envelope,
+        options: &Options<'a>,
+    ) -> Self {
+        let (legs, service) = legs(mission, orbits, envelope);
+        let objective = match mission.objective {
+            Objective::Makespan => mtsp::Objective::Makespan,
+            Objective::Total => mtsp::Objective::Total,
+        };
+        let default = ITERATIONS_PER_TARGET * orbits.len() as u64;
+        let search = mtsp::Options::default()
+            .with_objective(objective)
+            .with_seed(mission.seed)
+            .with_iterations(options.search_iterations.unwrap_or(default));
+        Self { mission, orbits, legs, service, search, watch: *options }
+    }
+
+    fn problem(&self, n_vehicles: usize) -> Result<Problem<'_, LegTimes>, mtsp::Error> {
+        Problem::new(&self.legs, n_vehicles)?.with_service(self.service.clone())
+    }
+
+    /// The circles of each vehicle in the order of their visits; spare vehicles get none.
+    pub(crate) fn routes(&self) -> Result<Vec<Vec<usize>>, Error> {
+        let Self { mission, orbits, .. } = *self;
+        let problem = self.problem(mission.fleet.vehicles)?;
+        let solution = match mission.pipeline {
+            Pipeline::Paper => {
+                let clusters = mission.fleet.vehicles.min(orbits.len());
+                let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
+                let centres: Vec<[f64; 2]> = orbits.iter().map(|orbit| orbit.circle.centre).collect();
+                let labels = cluster::kmeans(&centres, clusters, &options).map(|found| found.labels)?;
+                assign(&problem, &labels)?
+            }
+            Pipeline::Optimised => {
+                let goes_on =
+                    |_: &mtsp::Progress| !self.watch.should_stop.is_some_and(|should_stop| should_stop());
+                mtsp::solve_with(&problem, &self.search, &mut { goes_on })?
+            }
+        };
+        Ok(solution.routes.into_iter().map(to_circles).collect())
+    }
+
+    /// The cost of a plan's longest route.
+    pub(crate) fn longest(&self, plan: &Plan) -> Option<f64> {
+        let problem = self.problem(self.orbits.len()).ok()?;
+        let nodes = |planned: &VehiclePlan| planned.route.iter().map(|circle| circle + 1).collect::<Vec<_>>();
+        let costs = plan.vehicles.iter().map(nodes).map(|route| problem.route_length(0, &route));
+        Some(costs.fold(0.0, f64::max))
+    }
+
+    /// Routes that cost at most `limit`, as few as were found, with their costs; `None` if there are none.
+    pub(crate) fn fewest_routes(&self, limit: f64) -> Option<Vec<(Vec<usize>, f64)>> {
+        let n = self.orbits.len();
+        let problem = self.problem(n).ok()?.with_limits(vec![limit; n]).ok()?;
+        let found = mtsp::least_fleet(&problem, &self.search).ok()?;
+        let routes = found.solution.routes.into_iter().take(found.vehicles);
+        let priced = |route: Vec<usize>| {
+            let cost = problem.route_length(0, &route);
+            (to_circles(route), cost)
+        };
+        Some(routes.map(priced).collect())
+    }
 }
 
-/// Routes that cost at most `limit`, as few as were found, with their costs; `None` if there are none.
-pub(crate) fn fewest_routes(
-    mission: &Mission,
-    orbits: &[Orbit],
-    envelope: &Envelope,
-    limit: f64,
-) -> Option<Vec<(Vec<usize>, f64)>> {
-    let (legs, service) = legs(mission, orbits, envelope);
-    let problem = Problem::new(&legs, orbits.len()).ok()?.with_service(service).ok()?;
-    let problem = problem.with_limits(vec![limit; orbits.len()]).ok()?;
-    let found = mtsp::least_fleet(&problem, &search(mission, orbits.len())).ok()?;
-    let routes = found.solution.routes.into_iter().take(found.vehicles);
-    let priced = |route: Vec<usize>| {
-        let cost = problem.route_length(0, &route);
-        (route.into_iter().map(|node| node - 1).collect(), cost)
-    };
-    Some(routes.map(priced).collect())
+fn to_circles(route: Vec<usize>) -> Vec<usize> {
+    route.into_iter().map(|node| node - 1).collect()
 }
 
 /// What legs between depot (node 0) and circles (node `i + 1` for circle `i`) and what loiters cost.
@@ -93,18 +125,6 @@ fn legs(mission: &Mission, orbits: &[Orbit], envelope: &Envelope) -> (LegTimes, 
     });
     let around = |orbit: &Orbit| if by_length { orbit.loiter.length() } else { orbit.loiter.duration() };
     (legs, std::iter::once(0.0).chain(orbits.iter().map(around)).collect())
-}
-
-/// What is sought, and for how long.
-fn search(mission: &Mission, circles: usize) -> mtsp::Options {
-    let objective = match mission.objective {
-        Objective::Makespan => mtsp::Objective::Makespan,
-        Objective::Total => mtsp::Objective::Total,
-    };
-    mtsp::Options::default()
-        .with_objective(objective)
-        .with_seed(mission.seed)
-        .with_iterations(ITERATIONS_PER_TARGET * circles as u64)
 }
 
 /// Which route takes off from which pad: routes in the order of the bearings of their first circles, turned so that the sum of

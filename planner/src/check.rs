@@ -1,12 +1,11 @@
 //! All that is wrong with a mission, found before any planning.
 
-use crate::certificate::LeastTimes;
 use crate::circles::{geometry, groups, loiter_of, orbits};
 use crate::error::Problem;
 use crate::mission::{Entries, Mission, Model};
 use crate::planning::envelope;
+use crate::reach;
 use crate::transition::hover;
-use christofides::Metric;
 
 /// Coordinates beyond this (m) are no local field any more, and lose millimetres in the solver.
 const FARTHEST: f64 = 1e5;
@@ -29,7 +28,13 @@ impl Mission {
             self.distance_problems(&mut problems);
         }
         if problems.is_empty() {
-            self.endurance_problems(&mut problems);
+            problems.extend(orbits(self).map_or_else(
+                |_| Vec::new(),
+                |orbits| {
+                    let envelope = envelope(self, &orbits);
+                    reach::problems(self, &orbits, envelope)
+                },
+            ));
         }
         problems
     }
@@ -252,23 +257,6 @@ impl Mission {
                         safe_distance,
                     });
                 }
-            }
-        }
-    }
-
-    /// Targets that no vehicle can circle within its endurance, by the certificate's bounds for still air: proven, not estimated.
-    fn endurance_problems(&self, problems: &mut Vec<Problem>) {
-        let endurance = self.fleet.endurance;
-        if endurance.is_infinite() || self.environment.is_windy() {
-            return;
-        }
-        let Ok(orbits) = orbits(self) else { return };
-        let (envelope, pads) = (envelope(self, &orbits), self.pads());
-        let legs = LeastTimes { orbits: &orbits, pads: &pads, envelope: &envelope };
-        for (i, orbit) in orbits.iter().enumerate() {
-            let least = 2.0 * legs.distance(0, i + 1) + orbit.circle.duration;
-            if least > endurance {
-                problems.push(Problem::BeyondEndurance { target: orbit.circle.members[0], least, endurance });
             }
         }
     }

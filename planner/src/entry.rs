@@ -5,8 +5,8 @@ use crate::mission::Entries;
 use crate::plan::Entry;
 use quad_dynamics::{Direction, Motion};
 
-/// Samples with which a free entry starts.
-const SAMPLES_BEFORE_FREE: usize = 16;
+/// Samples with which a free entry starts: as many as a caller would be content with, so that it is never worse than they are.
+const SAMPLES_BEFORE_FREE: usize = 32;
 
 /// A candidate entry with a certified lower bound on the time to reach it.
 #[derive(Debug, Clone, Copy)]

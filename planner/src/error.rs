@@ -160,6 +160,20 @@ pub enum Problem {
         /// The endurance (s).
         endurance: f64,
     },
+    /// No flight to a target and back is possible with one battery.
+    #[error(
+        "fleet.vehicle.battery: no flight to target {} and back takes less than {least:.0} J, and {usable:.0} J may be used: \
+         use a larger battery, move the depot closer or leave the target out",
+        target + 1
+    )]
+    BeyondBattery {
+        /// The target, from 0.
+        target: usize,
+        /// A proven lower bound on the energy of a flight that circles only this target (J).
+        least: f64,
+        /// What may be used of a full battery (J).
+        usable: f64,
+    },
     /// A circle is outside the height limits.
     #[error(
         "the circle of target {} at height {height} m is outside transition.heights = [{}, {}]: widen the limits or change the height",
@@ -219,6 +233,7 @@ impl Problem {
             Self::DepotTooClose { .. } => "depot.position",
             Self::TargetsTooClose { .. } => "targets",
             Self::BeyondEndurance { .. } => "fleet.endurance",
+            Self::BeyondBattery { .. } => "fleet.vehicle.battery",
             Self::HeightOutsideLimits { .. } => "transition.heights",
             Self::TransitionBudget { .. } => "transition.thrust_budget",
             Self::ShapingBelowLoiter { .. } => "transition.shaping",

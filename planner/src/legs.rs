@@ -17,6 +17,9 @@ use quad_dynamics::Motion;
 /// candidates are discarded on every machine.
 const BATCH: usize = 2;
 
+/// What setting its angle free gains at most about a sampled entry (s), and an estimate of its time is off.
+const FREE_GAIN: f64 = 0.03;
+
 /// Everything that the legs of all routes share.
 pub(crate) struct Airspace<'a> {
     pub mission: &'a Mission,
@@ -168,11 +171,38 @@ impl Airspace<'_> {
         }
         let (best, mut candidates) = race.finish();
         let Some(best) = best else { return (None, candidates) };
-        let freed = match self.mission.transition.entries {
-            Entries::Free => self.freed(here, orbit, &best, &mut candidates),
-            Entries::Sampled(_) => None,
+        if self.mission.transition.entries != Entries::Free {
+            return (Some(best), candidates);
+        }
+        let other = self.best_of_other_direction(here, orbit, &best, &candidates);
+        let starts = [Some(best), other].into_iter().flatten();
+        let fastest = starts
+            .map(|start| self.freed(here, orbit, &start, &mut candidates).unwrap_or(start))
+            .min_by(|a, b| a.transition.duration.total_cmp(&b.transition.duration));
+        (fastest, candidates)
+    }
+
+    /// The fastest sampled arrival in the other direction than `best`, if it is so close that its angle set free may win.
+    fn best_of_other_direction(
+        &self,
+        here: &Motion,
+        orbit: &Orbit,
+        best: &Arrival,
+        candidates: &[Candidate],
+    ) -> Option<Arrival> {
+        let time = |candidate: &Candidate| match candidate.outcome {
+            Outcome::Solved { duration } | Outcome::Slower { duration } => Some((candidate.entry?, duration)),
+            _ => None,
         };
-        (Some(freed.unwrap_or(best)), candidates)
+        let others =
+            candidates.iter().filter_map(time).filter(|(entry, _)| entry.direction != best.entry.direction);
+        let (entry, duration) = others.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        if duration > best.transition.duration + FREE_GAIN {
+            return None;
+        }
+        let there = orbit.at(entry);
+        let transition = self.pilot.fly(here, Goal::Motion(there), &there, Hint::Time(duration)).ok()?;
+        Some(Arrival { entry, transition })
     }
 
     /// Solves all candidates that could win at some detail, the most promising first.

@@ -6,7 +6,7 @@
 //!
 //! | step | what happens | file |
 //! |---|---|---|
-//! | check | all that is wrong with the mission, at once | `check.rs` |
+//! | check | all that is wrong with the mission, at once; targets out of reach | `check.rs`, `reach.rs` |
 //! | circles | close targets merged; the fastest loiter within the limits | `circles.rs` |
 //! | routes | k-means and Christofides, or optimised routes | `allocation.rs` |
 //! | sorties | too long for the batteries? shorter flights, a battery swapped in between | `sorties.rs` |
@@ -47,7 +47,7 @@
 //! plan that a [`Replanner`] has changed carries no lower bounds: they are 0.
 //!
 //! # Features
-//! `rayon`: routes and candidate entries are solved side by side.
+//! `rayon`: routes and candidate entries are solved side by side. `serde`: [`Mission`] as data.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -70,6 +70,7 @@ mod options;
 mod plan;
 mod planning;
 mod race;
+mod reach;
 mod replan;
 mod round;
 mod sample;
@@ -77,6 +78,8 @@ mod separation;
 mod sorties;
 mod time_model;
 mod transition;
+#[cfg(feature = "serde")]
+mod unlimited;
 mod verify;
 mod whole_route;
 

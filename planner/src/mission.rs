@@ -10,53 +10,83 @@ use quad_dynamics::{Camera, LoiterYaw, ShapingLimits, Vehicle};
 ///
 /// Fields are public because a mission is plain data; [`Mission::problems`](Self::problems) says all that is wrong with
 /// one, and [`plan`](crate::plan) refuses a mission that has any.
+///
+/// With the feature `serde` a mission is read from and written to any self-describing format: keys are the names of the fields,
+/// unknown ones are refused, and all but `fleet.vehicles`, `fleet.vehicle` and `targets` have the defaults of [`Mission::new`]. A limit
+/// that is infinite is left out.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Mission {
     /// A name for people.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub name: String,
     /// Where the team starts and ends: east, north (m).
+    #[cfg_attr(feature = "serde", serde(default))]
     pub depot: [f64; 2],
     /// The vehicles.
     pub fleet: Fleet,
     /// How targets are circled.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub loiter: LoiterSettings,
     /// How vehicles fly between circles.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub transition: TransitionSettings,
     /// Time to swap a vehicle's battery on its pad (s); `None` if each flies once. Where endurance or battery are too small for one
     /// flight each, vehicles then fly several sorties.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub swap_time: Option<f64>,
     /// The camera that must see the targets; `None` if nobody asks.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub camera: Option<CameraSettings>,
     /// What they fly through.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub environment: Environment,
     /// What must be circled.
     pub targets: Vec<Target>,
     /// Targets whose cluster has at most this diameter (m) are circled as one; 0 leaves every target alone.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub merge_within: f64,
     /// What is minimised over the routes.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub objective: Objective,
     /// How routes are found.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub pipeline: Pipeline,
     /// Seed of everything random.
+    #[cfg_attr(feature = "serde", serde(default = "default_seed"))]
     pub seed: u64,
 }
 
 /// The vehicles of a mission, all alike.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Fleet {
     /// How many there are, at least 1.
     pub vehicles: usize,
     /// The parameters of each.
     pub vehicle: Vehicle,
     /// Least distance between two vehicles in the air (m); also sets how far apart the pads lie.
+    #[cfg_attr(feature = "serde", serde(default = "default_separation"))]
     pub separation: f64,
     /// Longest flight of a vehicle (s); infinite if there is no limit.
+    #[cfg_attr(
+        feature = "serde",
+        serde(
+            with = "crate::unlimited",
+            default = "crate::unlimited::none",
+            skip_serializing_if = "crate::unlimited::is"
+        )
+    )]
     pub endurance: f64,
 }
 
 /// How targets are circled. Defaults: radius 3 m, height 1.5 m, one full circle, thrust budget 0.6.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct LoiterSettings {
     /// Radius of the circle (m), unless a target has its own.
     pub radius: f64,
@@ -69,8 +99,16 @@ pub struct LoiterSettings {
     /// Where the nose points.
     pub yaw: LoiterYaw,
     /// Greatest speed on the circle (m/s); infinite if there is no limit.
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "crate::unlimited", skip_serializing_if = "crate::unlimited::is")
+    )]
     pub speed_limit: f64,
     /// Greatest horizontal acceleration on the circle (m/s^2), as an autopilot limits it; infinite if there is no limit.
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "crate::unlimited", skip_serializing_if = "crate::unlimited::is")
+    )]
     pub acceleration_limit: f64,
 }
 
@@ -90,6 +128,8 @@ impl Default for LoiterSettings {
 
 /// How vehicles fly between circles.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct TransitionSettings {
     /// The model whose minimum time is sought.
     pub model: Model,
@@ -126,6 +166,8 @@ impl Default for TransitionSettings {
 
 /// The camera of every vehicle, and what it looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CameraSettings {
     /// The camera: mount and angles of view.
     pub camera: Camera,
@@ -135,6 +177,8 @@ pub struct CameraSettings {
 
 /// What the vehicles fly through. Default: still air.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct Environment {
     /// Steady wind (m/s): the velocity of the air towards east and north, everywhere and all the time.
     pub wind: [f64; 2],
@@ -155,6 +199,8 @@ impl Environment {
 
 /// A model of the vehicle for transitions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Model {
     /// Position and velocity under a thrust vector.
     PointMass,
@@ -168,6 +214,8 @@ pub enum Model {
 
 /// Which entries of the next circle are tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Entries {
     /// So many equally spaced angles, each in both directions.
     Sampled(usize),
@@ -177,6 +225,8 @@ pub enum Entries {
 
 /// How the optimal control problem is made finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Transcription {
     /// Multiple shooting with piecewise-constant controls and Runge-Kutta steps: its controls can be flown as they are.
     RungeKutta,
@@ -188,6 +238,8 @@ pub enum Transcription {
 
 /// Something to circle.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct Target {
     /// A name for people; empty if it has none.
     pub name: String,
@@ -210,21 +262,42 @@ impl Target {
 }
 
 /// What is minimised over the routes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Objective {
     /// The time of the longest route: what batteries and daylight ask for.
+    #[default]
     Makespan,
     /// The sum over the routes, as in the paper. Without a balance rule one vehicle may do everything.
     Total,
 }
 
 /// How routes are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Pipeline {
     /// The paper's: k-means, Christofides in each cluster, and the fastest entry leg by leg.
     Paper,
     /// Routes optimised for the objective, entries chosen for whole routes.
+    #[default]
     Optimised,
+}
+
+/// Seed unless another is given.
+const SEED: u64 = 1;
+/// Separation (m) unless another is given.
+const SEPARATION: f64 = 3.0;
+
+#[cfg(feature = "serde")]
+fn default_seed() -> u64 {
+    SEED
+}
+
+#[cfg(feature = "serde")]
+fn default_separation() -> f64 {
+    SEPARATION
 }
 
 impl Mission {
@@ -235,7 +308,7 @@ impl Mission {
         Self {
             name: String::new(),
             depot: [0.0, 0.0],
-            fleet: Fleet { vehicles, vehicle, separation: 3.0, endurance: f64::INFINITY },
+            fleet: Fleet { vehicles, vehicle, separation: SEPARATION, endurance: f64::INFINITY },
             loiter: LoiterSettings::default(),
             transition: TransitionSettings::default(),
             swap_time: None,
@@ -243,9 +316,9 @@ impl Mission {
             environment: Environment::default(),
             targets,
             merge_within: 0.0,
-            objective: Objective::Makespan,
-            pipeline: Pipeline::Optimised,
-            seed: 1,
+            objective: Objective::default(),
+            pipeline: Pipeline::default(),
+            seed: SEED,
         }
     }
 }

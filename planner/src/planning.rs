@@ -1,6 +1,8 @@
 //! From mission to plan.
 
+use crate::allocation::{self, Routing};
 use crate::bound::Envelope;
+use crate::certificate;
 use crate::circles::{Orbit, orbits};
 use crate::error::{Error, Problem};
 use crate::legs::Airspace;
@@ -12,7 +14,6 @@ use crate::sorties::{self, Flight, share_in_reach};
 use crate::time_model::TimeModel;
 use crate::transition::Pilot;
 use crate::whole_route::Flown;
-use crate::{allocation, certificate};
 
 /// Plans a mission.
 ///
@@ -32,14 +33,14 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         .map_err(|source| Error::Mission { problems: vec![Problem::Loiter { target: 0, source }] })?;
     let envelope = envelope(mission, &orbits);
     let pads = mission.pads();
-    let routes = allocation::routes(mission, &orbits, &envelope)?;
-    let routes = allocation::to_pads(routes, &pads, &orbits, mission.depot);
+    let routing = Routing::new(mission, &orbits, &envelope, options);
+    let routes = allocation::to_pads(routing.routes()?, &pads, &orbits, mission.depot);
     let flights = sorties::one_each(&pads, routes);
     let airspace = |flights: &[Flight]| {
         let mut airspace = Airspace {
             mission,
             orbits: &orbits,
-            pilot: Pilot::new(mission, &orbits),
+            pilot: Pilot::new(mission, &orbits).with_most_iterations(options.solver_iterations),
             envelope,
             watch: Watch::new(*options, 0),
         };
@@ -50,11 +51,11 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     let mut plan = planned(&airspace(&flights), flights)?;
     let mut share = share_in_reach(&plan);
     if share < 1.0 && mission.swap_time.is_some() {
-        let mut limit = allocation::longest(mission, &orbits, &envelope, &plan).unwrap_or(0.0);
+        let mut limit = routing.longest(&plan).unwrap_or(0.0);
         // Solved flights scatter around the routes' costs: a limit that was too loose is tightened.
         for _ in 0..MOST_LIMITS {
             limit *= share;
-            let Some(flights) = sorties::share_out(mission, &orbits, &envelope, limit) else { break };
+            let Some(flights) = sorties::share_out(mission, &orbits, &routing, limit) else { break };
             plan = planned(&airspace(&flights), flights)?;
             share = share_in_reach(&plan);
             if share >= 1.0 {
@@ -64,7 +65,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         plan.warnings.push(Warning::Sorties { flights: plan.flights() });
     }
     if share < 1.0 {
-        plan.warnings.extend(more_vehicles(&plan, mission, &orbits, &envelope, share));
+        plan.warnings.extend(more_vehicles(&plan, &routing, share));
     }
     Ok(plan)
 }
@@ -187,15 +188,8 @@ pub(crate) fn for_all<T: Send, R: Send>(
 }
 
 /// How many vehicles are needed where some fly longer than they can.
-fn more_vehicles(
-    plan: &Plan,
-    mission: &Mission,
-    orbits: &[Orbit],
-    envelope: &Envelope,
-    share: f64,
-) -> Option<Warning> {
-    let limit = share * allocation::longest(mission, orbits, envelope, plan)?;
-    let needed = allocation::fewest_routes(mission, orbits, envelope, limit)?.len();
+fn more_vehicles(plan: &Plan, routing: &Routing, share: f64) -> Option<Warning> {
+    let needed = routing.fewest_routes(share * routing.longest(plan)?)?.len();
     // A longest route that is badly balanced may be too long although there are vehicles enough.
     Some(Warning::MoreVehicles { needed: needed.max(1) })
 }

@@ -112,6 +112,14 @@ impl Round {
         self.sweep() / self.angular_speed()
     }
 
+    /// No less energy (J) is used in the sweep; in wind only what the avionics take at `avionics` (W) is counted.
+    pub(crate) fn least_energy(&self, avionics: f64) -> f64 {
+        match self {
+            Self::Still(loiter) => loiter.energy(),
+            Self::Windy { .. } => avionics * self.duration(),
+        }
+    }
+
     /// Length of the sweep (m).
     pub(crate) fn length(&self) -> f64 {
         self.sweep() * self.radius()

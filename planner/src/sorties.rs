@@ -1,7 +1,6 @@
 //! Several flights of one vehicle, a battery swapped in between: the sorties of a mission that is too long for its batteries.
 
-use crate::allocation;
-use crate::bound::Envelope;
+use crate::allocation::{self, Routing};
 use crate::circles::Orbit;
 use crate::mission::Mission;
 use crate::plan::{Plan, Warning};
@@ -37,10 +36,10 @@ pub(crate) fn share_in_reach(plan: &Plan) -> f64 {
 pub(crate) fn share_out(
     mission: &Mission,
     orbits: &[Orbit],
-    envelope: &Envelope,
+    routing: &Routing,
     limit: f64,
 ) -> Option<Vec<Flight>> {
-    let mut routes = allocation::fewest_routes(mission, orbits, envelope, limit)?;
+    let mut routes = routing.fewest_routes(limit)?;
     routes.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     let pads = mission.pads();
     let mut loads = vec![0.0_f64; pads.len()];

@@ -327,3 +327,24 @@ fn shaping_below_the_loiter_is_named() {
     mission.transition.shaping.jerk = 0.1;
     assert!(matches!(mission.problems()[..], [Problem::ShapingBelowLoiter { limit: "jerk", target: 0, .. }]));
 }
+
+#[test]
+fn budgets_are_iterations() {
+    let mut mission = small(Model::PointMass);
+    mission.targets = (0..12)
+        .map(f64::from)
+        .map(|i| Target::at([20.0 * (1.7 * i).cos() + 30.0, 12.0 * i - 60.0]))
+        .collect();
+    let makespan = |iterations: u64| {
+        let plan = plan(&mission, &Options::default().with_search_iterations(iterations)).unwrap();
+        assert!(plan.verify(&mission, &Tolerances::default()).passed());
+        plan.certificate.makespan
+    };
+    assert!(makespan(20_000) <= makespan(0) * (1.0 + 1e-3));
+    let Err(Error::Leg { candidates, .. }) = plan(&mission, &Options::default().with_solver_iterations(1))
+    else {
+        panic!("solved in one iteration")
+    };
+    assert!(candidates.iter().all(|candidate| matches!(candidate.outcome, Outcome::Failed { .. })));
+    assert!(plan(&mission, &Options::default().with_solver_iterations(300)).is_ok());
+}

@@ -184,6 +184,14 @@ impl Envelope {
         Reach { time, distance: -distance / (2.0 * k) }
     }
 
+    /// Least time (s) over an offset (m: east, north), less `slack` (m) in any direction, from one speed over the ground to another at
+    /// most (m/s), by the bound along the offset; infinite against more wind than the vehicle is fast.
+    pub(crate) fn least_time_along(&self, offset: Vector2<f64>, slack: f64, [from, to]: [f64; 2]) -> f64 {
+        let Some(n) = offset.try_normalize(0.0) else { return 0.0 };
+        let gap = offset.norm() - slack;
+        if gap > 0.0 { self.least_time_with(self.wind.dot(&n), gap, from, to) } else { 0.0 }
+    }
+
     /// Least time (s) from one motion to another, over any path; only horizontal positions and velocities count.
     pub(crate) fn least_time_between(&self, from: &Motion, to: &Motion) -> f64 {
         self.least_time_over((to.position - from.position).xy(), from.velocity.xy(), to.velocity.xy())

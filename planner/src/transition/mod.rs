@@ -36,6 +36,8 @@ pub(crate) struct Pilot {
     airframe: Airframe,
     keep_outs: Vec<KeepOut>,
     settings: TransitionSettings,
+    /// Iterations after which a solve has failed.
+    most_iterations: Option<usize>,
 }
 
 /// One of the models.
@@ -73,7 +75,12 @@ impl Pilot {
         let keep_outs = (0..mission.targets.len())
             .map(|i| KeepOut { centre: mission.targets[i].position, radius: mission.safe_distance(i) })
             .collect();
-        Self { airframe, keep_outs, settings }
+        Self { airframe, keep_outs, settings, most_iterations: None }
+    }
+
+    /// With a limit of iterations for each solve.
+    pub(crate) fn with_most_iterations(self, most_iterations: Option<usize>) -> Self {
+        Self { most_iterations, ..self }
     }
 
     /// Whether [`Goal::Circle`] can be asked for: its attitude must be the same all the way round, if the model has one.
@@ -118,7 +125,12 @@ impl Pilot {
     }
 
     fn surroundings(&self) -> Surroundings<'_> {
-        Surroundings { keep_outs: &self.keep_outs, heights: self.settings.heights, settings: &self.settings }
+        Surroundings {
+            keep_outs: &self.keep_outs,
+            heights: self.settings.heights,
+            settings: &self.settings,
+            most_iterations: self.most_iterations,
+        }
     }
 
     /// The transition as an independent integration of its controls sees it; `None` if it is malformed.

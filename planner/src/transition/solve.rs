@@ -55,6 +55,8 @@ pub(crate) struct Surroundings<'a> {
     pub heights: [f64; 2],
     /// The mission's settings.
     pub settings: &'a TransitionSettings,
+    /// Iterations after which a solve has failed; `None` for the solver's own limit.
+    pub most_iterations: Option<usize>,
 }
 
 /// Residuals of the best failed attempt.
@@ -351,7 +353,8 @@ impl<'a, F> Attempt<'a, F> {
         let Setting { ref keep_outs, heights, longest_step, segments } = *setting;
         let problem =
             MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
-        let options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
+        let mut options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
+        options.max_iterations = self.surroundings.most_iterations.unwrap_or(options.max_iterations);
         let workspace = &mut Workspace::new();
         let watch = |iteration: &Iteration| self.watch(iteration, segments);
         let transcription = |uniform: f64| match self.surroundings.settings.transcription {
