@@ -63,10 +63,13 @@ class Vehicle:
 
 def main():
     vehicles = [Vehicle(system, int(sys.argv[1])) for system in (1, 2, 3)]
-    end = time.time() + 60
-    while time.time() < end and not all(vehicle.read for vehicle in vehicles):
+    end, linger = time.time() + 60, time.time() + 60
+    # Whoever has read a mission back may ask again, so the vehicles stay for another second.
+    while time.time() < min(end, linger):
         for vehicle in vehicles:
             vehicle.step()
+        if all(vehicle.read for vehicle in vehicles):
+            linger = min(linger, time.time() + 1.0)
         time.sleep(0.01)
     for vehicle in vehicles:
         commands = [vehicle.items[number].command for number in sorted(vehicle.items)]
