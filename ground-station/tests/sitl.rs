@@ -177,7 +177,7 @@ fn three_arducopters_fly_the_field() -> Result<(), Box<dyn Error>> {
             address: address.to_string(),
             log: Some(TelemetryLog::create(&log)?),
             clock: &|| begin.elapsed().as_secs_f64(),
-            requests: &mut Vec::new,
+            attend: &mut |_, _| (),
             tell: &mut |event| println!("{event:?}"),
         },
     )?;

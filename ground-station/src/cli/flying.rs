@@ -14,7 +14,8 @@ Examples:
   ground-station fly field.toml --connect tcpout:127.0.0.1:5760 --way loiter-items    uploads and reads back
 
 Without --arm nothing moves. While it flies, say hold, return or land on the standard input, for all vehicles or with
-a vehicle's number. A pilot who changes the mode has the last word: the link then lets go of that vehicle.";
+a vehicle's number; or what has changed, and the fleet is re-planned: appears EAST NORTH, moves TARGET EAST NORTH,
+vanishes TARGET, fails VEHICLE. A pilot who changes the mode has the last word: the link then lets go of that vehicle.";
 
 /// Arguments of `fly`.
 #[derive(Debug, clap::Args)]
@@ -60,9 +61,12 @@ pub struct FlyArguments {
     /// Log every packet of the session into a new file (.tlog).
     #[arg(long, value_name = "FILE")]
     pub log: Option<PathBuf>,
-    /// Read hold, return and land from a file (or pipe) instead of the standard input.
+    /// Read an operator's lines from a file (or pipe) instead of the standard input.
     #[arg(long, value_name = "FILE")]
     pub commands: Option<PathBuf>,
+    /// Follow the events of a file: lines as for simulate, `12.5 appears EAST NORTH`, times after the plan's start.
+    #[arg(long, value_name = "FILE")]
+    pub arrivals: Option<PathBuf>,
     /// No progress bar.
     #[arg(long, short)]
     pub quiet: bool,
@@ -94,6 +98,7 @@ impl FlyArguments {
             settings,
             log: self.log,
             commands: self.commands,
+            arrivals: self.arrivals,
             quiet: self.quiet,
         }
     }

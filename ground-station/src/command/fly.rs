@@ -1,5 +1,7 @@
 //! `fly`: from a mission file into the air.
 
+use super::follow::followable;
+use super::live::LivePlan;
 use super::plan::{mission, search};
 use super::sampled;
 use crate::execution::{Way, execution};
@@ -10,8 +12,8 @@ use crate::input::MissionFile;
 use crate::link::address::Address;
 use crate::link::item::MissionItem;
 use crate::link::pilot::Task;
-use crate::link::run::{Surroundings, parse_request, run};
-use crate::link::session::{Event, Request, Session};
+use crate::link::run::{Line, Surroundings, parse_line, run};
+use crate::link::session::{Event, Session};
 use crate::link::settings::{Reach, Settings};
 use crate::link::tlog::TelemetryLog;
 use crate::link::track::Track;
@@ -39,6 +41,8 @@ pub struct FlyRequest {
     pub log: Option<PathBuf>,
     /// A file with an operator's lines, instead of the standard input.
     pub commands: Option<PathBuf>,
+    /// A file of events while the fleet flies.
+    pub arrivals: Option<PathBuf>,
     /// No progress bar.
     pub quiet: bool,
 }
@@ -64,6 +68,10 @@ pub fn fly(request: &FlyRequest, tell: &mut dyn FnMut(&str)) -> Result<String, F
             "live orbits are not flown by this link: stream, or use --way polygon".into(),
         ));
     }
+    let listed = request.arrivals.as_deref().map(crate::events::read).transpose()?.unwrap_or_default();
+    if request.arrivals.is_some() {
+        followable(&file)?;
+    }
     let plan = search(&file, request.quiet)?;
     let tasks = tasks(&file, &plan, request.way, &request.systems, &mut |warning| {
         tell(&format!("warning: {warning}"))
@@ -73,6 +81,7 @@ pub fn fly(request: &FlyRequest, tell: &mut dyn FnMut(&str)) -> Result<String, F
         .map_err(|source| Failure::Link { address: request.address.to_string(), source })?;
     let log = request.log.as_deref().map(TelemetryLog::create).transpose()?;
     let lines = operator(request.commands.as_deref())?;
+    let mut live = LivePlan::new(&file, plan, &tasks, listed, true);
     let begin = Instant::now();
     let mut session = Session::new(tasks, origin, request.settings, 0.0);
     let mut told = |event: &Event| tell(&event_line(event));
@@ -81,7 +90,12 @@ pub fn fly(request: &FlyRequest, tell: &mut dyn FnMut(&str)) -> Result<String, F
         address: request.address.to_string(),
         log,
         clock: &|| begin.elapsed().as_secs_f64(),
-        requests: &mut || lines.try_iter().collect(),
+        attend: &mut |session, now| {
+            lines.try_iter().for_each(|line| take(line, session, &mut live, now));
+            if let Ok(live) = &mut live {
+                live.poll(session, now);
+            }
+        },
         tell: &mut told,
     };
     run(&mut session, &mut surroundings)?;
@@ -110,27 +124,43 @@ pub fn tasks(
     systems: &[u8],
     warn: &mut dyn FnMut(&str),
 ) -> Result<Vec<Task>, Failure> {
-    let origin = origin_of(file)?;
+    if plan.vehicles.iter().enumerate().any(|(index, planned)| planned.vehicle != index) {
+        return Err(Failure::Refused(
+            "vehicles would fly several times, with batteries swapped by hand: plan with more vehicles or fewer targets to fly \
+             by this link, or fly the exported missions one by one"
+                .to_owned(),
+        ));
+    }
     let systems = system_ids(systems, plan.vehicles.len())?;
     let mut tasks = Vec::new();
-    for (index, vehicle) in plan.vehicles.iter().enumerate() {
-        let samples = sampled(file, plan, index, TRACK_RATE)?;
-        let Some(track) = Track::new(&samples) else { continue };
-        let flown = vehicle_mission(file, plan, vehicle);
-        let number = index + 1;
-        for warning in execution(way, file.autopilot, &flown, vehicle.duration(), &samples).warnings {
-            warn(&format!("vehicle {number}: {warning}"));
-        }
-        let items = match way {
-            Way::Stream => Vec::new(),
-            _ => {
-                MissionItem::of_plan(&qgc_mission(&flown, file.autopilot, way, &origin).plan, file.autopilot)
-            }
-        };
-        let (autopilot, pad, system) = (file.autopilot, vehicle.pad, systems[index]);
-        tasks.push(Task { number, system, autopilot, way, pad, track, items });
+    for (index, &system) in systems.iter().enumerate() {
+        let (task, warnings) = task(file, plan, index, way, system)?;
+        warnings.iter().for_each(|warning| warn(&format!("vehicle {}: {warning}", index + 1)));
+        tasks.extend(task);
     }
     Ok(tasks)
+}
+
+/// What a vehicle of a plan is to do, and what it will do otherwise; nothing for one that stays on its pad.
+pub(super) fn task(
+    file: &MissionFile,
+    plan: &Plan,
+    index: usize,
+    way: Way,
+    system: u8,
+) -> Result<(Option<Task>, Vec<String>), Failure> {
+    let origin = origin_of(file)?;
+    let vehicle = &plan.vehicles[index];
+    let samples = sampled(file, plan, index, TRACK_RATE)?;
+    let flown = vehicle_mission(file, plan, vehicle);
+    let items = match way {
+        Way::Stream => Vec::new(),
+        _ => MissionItem::of_plan(&qgc_mission(&flown, file.autopilot, way, &origin).plan, file.autopilot),
+    };
+    let warnings = execution(way, file.autopilot, &flown, vehicle.duration(), &samples).warnings;
+    let (autopilot, pad, number) = (file.autopilot, vehicle.pad, index + 1);
+    let task = Track::new(&samples).map(|track| Task { number, system, autopilot, way, pad, track, items });
+    Ok((task, warnings))
 }
 
 fn system_ids(given: &[u8], vehicles: usize) -> Result<Vec<u8>, Failure> {
@@ -153,8 +183,19 @@ fn event_line(event: &Event) -> String {
     format!("{:8.2} s  {who}: {}", event.time, event.text)
 }
 
+/// Does what an operator says.
+fn take(line: Line, session: &mut Session, live: &mut Result<LivePlan, Failure>, now: f64) {
+    match (line, live) {
+        (Line::Request(request), _) => session.ask(request, now),
+        (Line::Event(event), Ok(live)) => live.push(event),
+        (Line::Event(event), Err(why)) => {
+            session.say(&format!("{:?} cannot be followed: {why}", event.event), now);
+        }
+    }
+}
+
 /// An operator's lines as they come, each from a file or from the standard input.
-fn operator(path: Option<&Path>) -> Result<Receiver<Request>, Failure> {
+fn operator(path: Option<&Path>) -> Result<Receiver<Line>, Failure> {
     let (sender, receiver) = channel();
     let source: Box<dyn BufRead + Send> = match path {
         Some(path) => {
@@ -167,9 +208,13 @@ fn operator(path: Option<&Path>) -> Result<Receiver<Request>, Failure> {
     };
     std::thread::spawn(move || {
         for line in source.lines().map_while(Result::ok) {
-            match parse_request(&line) {
-                Ok(Some(request)) if sender.send(request).is_err() => return,
-                Ok(_) => {}
+            match parse_line(&line) {
+                Ok(Some(line)) => {
+                    if sender.send(line).is_err() {
+                        return;
+                    }
+                }
+                Ok(None) => {}
                 Err(problem) => eprintln!("{problem}"),
             }
         }

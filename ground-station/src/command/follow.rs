@@ -3,6 +3,7 @@
 use crate::events::{Arrivals, Chance, TimedEvent, words};
 use crate::failure::Failure;
 use crate::input::MissionFile;
+use crate::problem::Problem;
 use planner::{Event, Mission, Plan, Replanner, Update};
 
 /// What has become of a mission after its events.
@@ -47,21 +48,38 @@ pub(super) fn follow(
     Ok(Followed { mission: replanner.mission().clone(), plan: replanner.plan().clone(), log })
 }
 
+/// Re-planning moves circles of single targets; said before the time for a plan is spent.
+pub(super) fn followable(file: &MissionFile) -> Result<(), Failure> {
+    if file.mission.merge_within > 0.0 {
+        let key = "targets.merge_within".to_owned();
+        let message = format!(
+            "{key} = {} leaves targets without a circle of their own, and events cannot be followed: set it to 0",
+            file.mission.merge_within
+        );
+        return Err(Failure::Input(vec![Problem { file: file.file.clone(), line: None, key, message }]));
+    }
+    Ok(())
+}
+
 fn end(plan: &Plan) -> f64 {
     plan.vehicles.iter().map(planner::VehiclePlan::end_time).fold(0.0, f64::max)
 }
 
 fn take_in(replanner: &mut Replanner, timed: &TimedEvent, log: &mut Vec<(f64, String)>) {
-    let targets = replanner.mission().targets.len();
-    let what = words(&timed.event, targets);
-    let came = match unknown(replanner, &timed.event) {
-        Some(who) => format!("refused: there is no {who}"),
-        None => match replanner.apply(timed.time, &timed.event) {
-            Ok(update) => outcome(&update),
-            Err(error) => format!("refused: {error}"),
-        },
+    let what = words(&timed.event, replanner.mission().targets.len());
+    let came = match apply(replanner, timed.time, &timed.event) {
+        Ok(update) => outcome(&update),
+        Err(why) => why,
     };
     log.push((timed.time, format!("{what}: {came}")));
+}
+
+/// Lets a plan follow an event from `time` (s) on; what is refused is said with its reason, and the plan stays.
+pub(super) fn apply(replanner: &mut Replanner, time: f64, event: &Event) -> Result<Update, String> {
+    match unknown(replanner, event) {
+        Some(who) => Err(format!("refused: there is no {who}")),
+        None => replanner.apply(time, event).map_err(|error| format!("refused: {error}")),
+    }
 }
 
 /// Numbers from 1 here, as people wrote them.
@@ -78,7 +96,8 @@ fn unknown(replanner: &Replanner, event: &Event) -> Option<String> {
     (index >= count).then(|| format!("{what} {}: there are {count}", index + 1))
 }
 
-fn outcome(update: &Update) -> String {
+/// What an event has changed, in words.
+pub(super) fn outcome(update: &Update) -> String {
     let list = |indices: &[usize]| {
         indices.iter().map(|index| (index + 1).to_string()).collect::<Vec<_>>().join(", ")
     };

@@ -1,6 +1,6 @@
 //! `simulate`: a plan flown by a simulated team in wind and gusts, re-planned as targets come, go and move.
 
-use super::follow::{Followed, follow};
+use super::follow::{Followed, follow, followable};
 use super::plan::{mission, search};
 use crate::events::Arrivals;
 use crate::export::folder::{self, OutputFile};
@@ -8,7 +8,6 @@ use crate::export::members;
 use crate::failure::Failure;
 use crate::input::MissionFile;
 use crate::plot::{MapVehicle, map, map_scene};
-use crate::problem::Problem;
 use crate::report::Table;
 use planner::quad_dynamics::nalgebra::Vector3;
 use planner::quad_dynamics::simulation::{SensorNoise, SimulationOptions};
@@ -90,19 +89,6 @@ fn options(request: &SimulateRequest, file: &MissionFile) -> SimulationOptions {
         options = options.with_noise(SensorNoise::typical());
     }
     options
-}
-
-/// Re-planning moves circles of single targets; said before the time for a plan is spent.
-fn followable(file: &MissionFile) -> Result<(), Failure> {
-    if file.mission.merge_within > 0.0 {
-        let key = "targets.merge_within".to_owned();
-        let message = format!(
-            "{key} = {} leaves targets without a circle of their own, and events cannot be followed: set it to 0",
-            file.mission.merge_within
-        );
-        return Err(Failure::Input(vec![Problem { file: file.file.clone(), line: None, key, message }]));
-    }
-    Ok(())
 }
 
 fn stands(verification: &Verification) -> String {

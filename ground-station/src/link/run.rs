@@ -4,7 +4,9 @@ use super::frames::frame;
 use super::session::{Event, Request, Session};
 use super::tlog::TelemetryLog;
 use super::transport::Transport;
+use crate::events::{self, TimedEvent};
 use crate::failure::Failure;
+use crate::problem::abridged;
 use crate::words::SAFE_ACTIONS;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -22,8 +24,8 @@ pub struct Surroundings<'a> {
     pub log: Option<TelemetryLog>,
     /// Seconds since the session's start.
     pub clock: &'a dyn Fn() -> f64,
-    /// What an operator has asked for since the last call.
-    pub requests: &'a mut dyn FnMut() -> Vec<Request>,
+    /// Called again and again with the time: does what an operator has asked for since, and follows events.
+    pub attend: &'a mut dyn FnMut(&mut Session, f64),
     /// Who is told what happens.
     pub tell: &'a mut dyn FnMut(&Event),
 }
@@ -38,9 +40,7 @@ pub fn run(session: &mut Session, surroundings: &mut Surroundings<'_>) -> Result
     let mut sequence = 0;
     loop {
         let now = (surroundings.clock)();
-        for request in (surroundings.requests)() {
-            session.ask(request, now);
-        }
+        (surroundings.attend)(session, now);
         for (system, message) in session.poll(now) {
             let bytes = frame(SYSTEM, COMPONENT, sequence, &message);
             sequence = sequence.wrapping_add(1);
@@ -74,44 +74,60 @@ fn note(log: &mut Option<TelemetryLog>, frame: &[u8]) -> Result<(), Failure> {
     log.add(since.as_micros() as u64, frame)
 }
 
-/// Reads a line of an operator: `hold`, `return` or `land`, for all vehicles or for the one whose number follows.
+/// What an operator says.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Line {
+    /// Hold, return or land.
+    Request(Request),
+    /// Something that the plan has to follow.
+    Event(TimedEvent),
+}
+
+/// Reads a line of an operator: `hold`, `return` or `land`, for all vehicles or for the one whose number follows; or an event as
+/// [`events`] reads it, without a time for one that happens now.
 ///
 /// # Errors
 ///
 /// What is wrong with it, in plain words.
-pub fn parse_request(line: &str) -> Result<Option<Request>, String> {
-    let remedy = || {
-        format!(
-            "\"{}\" is not known: say hold, return or land, with a vehicle's number or without",
-            line.trim()
-        )
+pub fn parse_line(line: &str) -> Result<Option<Line>, String> {
+    let mut words = line.split('#').next().unwrap_or_default().split_whitespace();
+    let Some(word) = words.next() else { return Ok(None) };
+    if let Some(&(_, action)) = SAFE_ACTIONS.iter().find(|(known, _)| *known == word) {
+        let vehicle = words.next().map(str::parse).transpose();
+        if let (Ok(vehicle), None) = (vehicle, words.next()) {
+            return Ok(Some(Line::Request(Request { vehicle, action })));
+        }
+    }
+    let event = match word.parse::<f64>() {
+        Ok(_) => events::parse(line),
+        Err(_) => events::parse(&format!("0 {line}")),
     };
-    let mut words = line.split_whitespace();
-    let Some(word) = words.next().filter(|word| !word.starts_with('#')) else { return Ok(None) };
-    let action = SAFE_ACTIONS
-        .iter()
-        .find(|(known, _)| *known == word)
-        .map(|&(_, action)| action)
-        .ok_or_else(remedy)?;
-    let vehicle = words.next().map(|number| number.parse().map_err(|_| remedy())).transpose()?;
-    if words.next().is_some() { Err(remedy()) } else { Ok(Some(Request { vehicle, action })) }
+    event.map(|event| event.map(Line::Event)).map_err(|_| {
+        format!(
+            "\"{}\" is not known: say hold, return or land, with a vehicle's number or without; or an event: appears EAST NORTH, \
+             moves TARGET EAST NORTH, vanishes TARGET, fails VEHICLE, with the time before it or for now",
+            abridged(line.trim())
+        )
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{Line, Request, TimedEvent, parse_line};
     use crate::link::settings::SafeAction;
+    use planner::Event;
 
     #[test]
     fn an_operators_lines() {
-        assert_eq!(parse_request("hold\n"), Ok(Some(Request { vehicle: None, action: SafeAction::Hold })));
-        assert_eq!(
-            parse_request(" return 2 "),
-            Ok(Some(Request { vehicle: Some(2), action: SafeAction::Return }))
-        );
-        assert_eq!((parse_request(""), parse_request("# later")), (Ok(None), Ok(None)));
-        for line in ["stop", "hold two", "land 1 2"] {
-            assert!(parse_request(line).is_err(), "{line}");
+        let request = |vehicle, action| Ok(Some(Line::Request(Request { vehicle, action })));
+        assert_eq!(parse_line("hold\n"), request(None, SafeAction::Hold));
+        assert_eq!(parse_line(" return 2 # now"), request(Some(2), SafeAction::Return));
+        assert_eq!((parse_line(""), parse_line("# later")), (Ok(None), Ok(None)));
+        let event = |time, event| Ok(Some(Line::Event(TimedEvent { time, event })));
+        assert_eq!(parse_line("vanishes 2"), event(0.0, Event::TargetVanishes(1)));
+        assert_eq!(parse_line("12.5 fails 1"), event(12.5, Event::VehicleFails(0)));
+        for line in ["stop", "hold two", "land 1 2", "fails", "-1 fails 2", "appears 1"] {
+            assert!(parse_line(line).is_err_and(|problem| problem.contains(line)), "{line}");
         }
     }
 }

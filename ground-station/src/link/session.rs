@@ -39,7 +39,7 @@ pub struct Session {
     start: Option<f64>,
     next_heartbeat: f64,
     events: Vec<Event>,
-    has_launched: bool,
+    launched: Option<f64>,
 }
 
 /// From the decision to the start of the plan (s): long enough for every link's delay.
@@ -50,7 +50,7 @@ impl Session {
     #[must_use]
     pub fn new(tasks: Vec<Task>, origin: Origin, settings: Settings, now: f64) -> Self {
         let pilots = tasks.into_iter().map(|task| Pilot::new(task, origin, settings, now)).collect();
-        Self { pilots, settings, start: None, next_heartbeat: now, events: Vec::new(), has_launched: false }
+        Self { pilots, settings, start: None, next_heartbeat: now, events: Vec::new(), launched: None }
     }
 
     /// The vehicles.
@@ -63,6 +63,28 @@ impl Session {
     #[must_use]
     pub fn start(&self) -> Option<f64> {
         self.start
+    }
+
+    /// When the flights began (s): streamed, all at the plan's start; missions, with the first take-off. `None` before.
+    #[must_use]
+    pub fn begun(&self) -> Option<f64> {
+        if self.keeps_times() { self.start } else { self.launched }
+    }
+
+    fn keeps_times(&self) -> bool {
+        self.pilots.iter().all(|pilot| pilot.task().way == Way::Stream)
+    }
+
+    /// Gives a vehicle another task; whether it was in time for that.
+    pub fn renew(&mut self, task: &Task, now: f64) -> bool {
+        let of_task = |pilot: &&mut Pilot| pilot.task().number == task.number;
+        self.pilots.iter_mut().find(of_task).is_some_and(|pilot| pilot.renew(task, now))
+    }
+
+    /// Lets a vehicle stay on its pad, or land on it, that has nothing left to do.
+    pub fn dismiss(&mut self, number: usize, now: f64) {
+        let of_number = |pilot: &&mut Pilot| pilot.task().number == number;
+        self.pilots.iter_mut().filter(|pilot| of_number(pilot)).for_each(|pilot| pilot.dismiss(now));
     }
 
     /// Takes a message of a vehicle.
@@ -133,7 +155,8 @@ impl Session {
         self.pilots.iter().filter_map(failure).collect()
     }
 
-    fn say(&mut self, text: &str, now: f64) {
+    /// Has something told about the fleet.
+    pub fn say(&mut self, text: &str, now: f64) {
         self.events.push(Event { time: now, vehicle: None, text: text.to_owned() });
     }
 
@@ -143,20 +166,20 @@ impl Session {
             return;
         }
         let failed = |pilot: &Pilot| matches!(pilot.phase(), Phase::Over(Outcome::Failed(_)));
-        if !self.has_launched {
+        if self.launched.is_none() {
             if self.pilots.iter().any(failed) {
                 self.pilots
                     .iter_mut()
                     .for_each(|pilot| pilot.make_safe(SafeAction::Land, "another vehicle failed", now));
             } else if self.pilots.iter().all(|pilot| *pilot.phase() == Phase::Ready) {
-                self.has_launched = true;
+                self.launched = Some(now);
                 self.say("all vehicles are ready", now);
             }
         }
-        if !self.has_launched {
+        if self.launched.is_none() {
             return;
         }
-        let keeps_times = self.pilots.iter().all(|pilot| pilot.task().way == Way::Stream);
+        let keeps_times = self.keeps_times();
         for pilot in &mut self.pilots {
             pilot.launch(now);
             if !keeps_times && !matches!(pilot.phase(), Phase::Over(_)) {
@@ -174,7 +197,7 @@ impl Session {
     }
 
     fn stay_together(&mut self, now: f64) {
-        if !self.has_launched {
+        if self.launched.is_none() {
             return;
         }
         let any = |is: fn(&Pilot) -> bool| self.pilots.iter().any(is);

@@ -5,7 +5,7 @@
 use super::solver;
 use crate::failure::Failure;
 use crate::plot::colour;
-use planner::{Entries, Mission, Options, Target};
+use planner::{Entries, Mission, Options, Pipeline, Target};
 use std::f64::consts::PI;
 use std::fmt::Write;
 
@@ -41,27 +41,22 @@ pub fn run(mission: &Mission, distances: &[f64]) -> Result<Vec<Flight>, Failure>
     for &distance in distances {
         for index in 0..ENTRIES {
             let entry = -PI / 2.0 + PI * index as f64 / (ENTRIES - 1) as f64;
-            let [a, b] = [1.0, -1.0].map(|turn| one(mission, distance * mission.loiter.radius, entry, turn));
-            let (a, b) = (a?, b?);
-            flights.push(if a.duration <= b.duration { a } else { b });
+            flights.push(one(mission, distance * mission.loiter.radius, entry)?);
         }
     }
     Ok(flights)
 }
 
-/// The planner tries the entry at angle 0 when it tries one: the start is turned instead, and the path turned back.
-///
-/// It chooses the direction for the whole route, hence with the flight home: the sweep is such that the exit in the direction
-/// of `turn` is where the way home is short.
-fn one(settings: &Mission, distance: f64, entry: f64, turn: f64) -> Result<Flight, Failure> {
+/// The planner tries the entry at angle 0 when it tries one: the start is turned instead, and the path turned back. Leg by leg it
+/// takes the faster direction.
+fn one(settings: &Mission, distance: f64, entry: f64) -> Result<Flight, Failure> {
     let mut mission = settings.clone();
     mission.targets = vec![Target::at([0.0, 0.0])];
     mission.fleet.vehicles = 1;
     mission.merge_within = 0.0;
+    mission.pipeline = Pipeline::Paper;
     mission.depot = [distance * entry.cos(), -distance * entry.sin()];
     mission.transition.entries = Entries::Sampled(1);
-    let good_exit = -turn * PI / 4.0 - entry;
-    mission.loiter.sweep = (turn * good_exit - 0.2).rem_euclid(2.0 * PI) + 0.2;
     let plan = planner::plan(&mission, &Options::default()).map_err(solver)?;
     let leg =
         plan.vehicles.first().and_then(|vehicle| vehicle.legs.first()).ok_or_else(|| solver("no flight"))?;

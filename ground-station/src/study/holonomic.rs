@@ -3,15 +3,17 @@
 //! The quadcopter circles a first target and flies to the circle around a second, in the least time over all entries and both
 //! directions. The holonomic vehicle leaves the same point and moves at the loiter speed in any direction at once: its time is
 //! the least distance to the second circle over that speed. The distance is that least distance, in loiter radii, from 1 on:
-//! towards 0 the ratio has no bound. Where the quadcopter leaves the first circle is drawn: the depot lies in a random direction.
+//! towards 0 the ratio has no bound. Where the second circle lies is drawn: within a right angle to both sides of the way
+//! straight out of the first one.
 
 use super::tally::Row;
 use super::{Trials, solver};
 use crate::failure::Failure;
-use planner::{Entries, Mission, Options, Target};
-use std::f64::consts::TAU;
+use planner::{Entries, Mission, Options, Pipeline, Plan, Target};
+use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Runs the study for every distance between the circles (in loiter radii), with the vehicle and settings of a mission.
+/// Runs the study for every distance from the exit to the second circle (in loiter radii), with the vehicle and settings of a
+/// mission.
 ///
 /// # Errors
 ///
@@ -22,38 +24,48 @@ pub fn run(
     entries: usize,
     distances: &[f64],
 ) -> Result<Vec<Row>, Failure> {
+    let radius = mission.loiter.radius;
+    let mut settings = mission.clone();
+    settings.targets = vec![Target::at([0.0, 0.0])];
+    settings.fleet.vehicles = 1;
+    settings.merge_within = 0.0;
+    // Entered on the side of the depot, left on the other: the second target is the farther one, and not in the way.
+    settings.depot = [-8.0 * radius, 0.0];
+    settings.loiter.sweep = PI;
+    // Leg by leg, the fastest of all entries; for the whole route another might be chosen.
+    settings.pipeline = Pipeline::Paper;
+    settings.transition.entries = Entries::Sampled(entries);
+    let exit = exit(&planner::plan(&settings, &Options::default()).map_err(solver)?)?;
     let tallies = trials.run(distances.len(), |cell, draw| {
-        // The exit is anywhere on the circle; the centres lie so that distances around the wanted one come out.
-        let gap = distances[cell] * mission.loiter.radius;
-        let bearing = draw.between(0.0, TAU);
-        one(mission, entries, gap, bearing)
+        let away = (distances[cell] + 1.0) * radius;
+        let bearing = exit[1].atan2(exit[0]) + draw.between(-FRAC_PI_2, FRAC_PI_2);
+        one(&settings, [exit[0] + away * bearing.cos(), exit[1] + away * bearing.sin()])
     })?;
     let row = |(&x, tally)| Row { series: "ratio of times".to_owned(), x, tally };
     Ok(distances.iter().zip(tallies).map(row).collect())
 }
 
-/// The ratio for two circles whose rims are `gap` (m) apart.
-fn one(settings: &Mission, entries: usize, gap: f64, bearing: f64) -> Result<f64, Failure> {
-    let radius = settings.loiter.radius;
-    let second = [2.0 * radius + gap, 0.0];
+/// The ratio for a second target at `second` (m).
+fn one(settings: &Mission, second: [f64; 2]) -> Result<f64, Failure> {
     let mut mission = settings.clone();
-    mission.targets = vec![Target::at([0.0, 0.0]), Target::at(second)];
-    mission.fleet.vehicles = 1;
-    mission.merge_within = 0.0;
-    // Outside both circles.
-    let away = 8.0 * radius + gap;
-    mission.depot = [away * bearing.cos(), away * bearing.sin()];
-    mission.transition.entries = Entries::Sampled(entries);
+    mission.targets.push(Target::at(second));
     let plan = planner::plan(&mission, &Options::default()).map_err(solver)?;
-    let legs = plan.vehicles.first().map(|vehicle| vehicle.legs.as_slice()).unwrap_or_default();
-    let [from, to, ..] = legs else { return Err(solver("no transition between the circles")) };
-    let (Some(left), Some(reached)) = (from.loiter, to.loiter) else { return Err(solver("no circles")) };
-    let (left_circle, next) = (&plan.circles[left.circle], &plan.circles[reached.circle]);
-    let sign = f64::from(crate::words::sign(left.entry.direction));
-    let angle = left.entry.angle + sign * left_circle.sweep;
-    let exit = [left_circle.centre[0] + radius * angle.cos(), left_circle.centre[1] + radius * angle.sin()];
-    let distance = (exit[0] - next.centre[0]).hypot(exit[1] - next.centre[1]) - next.radius;
-    Ok(to.transition.duration / (distance / next.speed))
+    let leg = plan.vehicles.first().and_then(|vehicle| vehicle.legs.get(1));
+    let (Some(leg), [x, y]) = (leg, exit(&plan)?) else { return Err(solver("no flight between circles")) };
+    let Some(loiter) = leg.loiter else { return Err(solver("no second circle")) };
+    let next = &plan.circles[loiter.circle];
+    let distance = (x - next.centre[0]).hypot(y - next.centre[1]) - next.radius;
+    Ok(leg.transition.duration / (distance / next.speed))
+}
+
+/// Where the first circle is left (m).
+fn exit(plan: &Plan) -> Result<[f64; 2], Failure> {
+    let first = plan.vehicles.first().and_then(|vehicle| vehicle.legs.first()?.loiter);
+    let loiter = first.ok_or_else(|| solver("no circle"))?;
+    let circle = &plan.circles[loiter.circle];
+    let sign = f64::from(crate::words::sign(loiter.entry.direction));
+    let (sin, cos) = (loiter.entry.angle + sign * circle.sweep).sin_cos();
+    Ok([circle.centre[0] + circle.radius * cos, circle.centre[1] + circle.radius * sin])
 }
 
 #[cfg(test)]

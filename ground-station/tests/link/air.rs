@@ -1,7 +1,8 @@
 //! A session and its vehicles with a bad radio between them and time that only the test moves.
 
 use crate::peer::{Firmware, Peer};
-use ground_station::command::tasks;
+use ground_station::command::{LivePlan, tasks};
+use ground_station::events;
 use ground_station::execution::Way;
 use ground_station::geodesy::Origin;
 use ground_station::input::{self, MissionFile};
@@ -28,6 +29,8 @@ pub struct Radio {
 
 pub struct Air {
     pub session: Session,
+    /// What follows events, where a test has some.
+    pub live: Option<LivePlan>,
     pub peers: Vec<Peer>,
     pub events: Vec<Event>,
     pub time: f64,
@@ -39,7 +42,7 @@ pub struct Air {
 }
 
 /// Three targets, three vehicles, inside ArduCopter's shaping limits.
-fn mission_text(autopilot: &str) -> String {
+pub fn mission_text(autopilot: &str) -> String {
     format!(
         r#"
         name = "three"
@@ -94,6 +97,7 @@ impl Air {
         Self {
             peers: peers_of(firmware, &tasks, &origin),
             session: Session::new(tasks, origin, settings, 0.0),
+            live: None,
             events: Vec::new(),
             time: 0.0,
             radio,
@@ -102,6 +106,16 @@ impl Air {
             down: Vec::new(),
             sequence: 0,
         }
+    }
+
+    /// The same with a plan that follows events: lines as an operator writes them.
+    pub fn with_events(mut self, firmware: Firmware, events: &[&str]) -> Self {
+        let (file, plan) = planned(firmware);
+        let tasks: Vec<Task> = self.session.pilots().iter().map(|pilot| pilot.task().clone()).collect();
+        let listed = events.iter().filter_map(|line| events::parse(line).expect("an event")).collect();
+        self.live =
+            Some(LivePlan::new(&file, plan.clone(), &tasks, listed, false).expect("it can follow events"));
+        self
     }
 
     /// From 0 to 1 (xorshift).
@@ -124,6 +138,9 @@ impl Air {
     /// Two hundredths of a second.
     pub fn tick(&mut self) {
         self.time += 0.02;
+        if let Some(live) = &mut self.live {
+            live.poll(&mut self.session, self.time);
+        }
         for (system, message) in self.session.poll(self.time) {
             self.sequence = self.sequence.wrapping_add(1);
             let bytes = frame(255, 190, self.sequence, &message);

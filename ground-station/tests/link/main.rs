@@ -2,6 +2,7 @@
 //! loopback UDP, and against packets that another library wrote.
 
 mod air;
+mod arrivals;
 mod flights;
 mod follower;
 mod packets;
