@@ -3,7 +3,7 @@
 use crate::execution::Way;
 use crate::input::Autopilot;
 use crate::link::settings::SafeAction;
-use planner::{Direction, Model, Objective, Pipeline, SolverStatus, Transcription};
+use planner::{Direction, Model, Objective, Pipeline, Plan, SolverStatus, Transcription};
 
 /// Words for [`Autopilot`].
 pub const AUTOPILOTS: [(&str, Autopilot); 2] = [("ardupilot", Autopilot::ArduPilot), ("px4", Autopilot::Px4)];
@@ -40,6 +40,30 @@ pub const TRANSCRIPTIONS: [(&str, Transcription); 3] = [
 #[must_use]
 pub fn word<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
     words.iter().find(|(_, listed)| listed == value).map_or("unknown", |(word, _)| word)
+}
+
+/// The vehicle of a flight of a plan (from 0), and which of its flights it is; both from 1.
+#[must_use]
+pub fn flight_numbers(plan: &Plan, index: usize) -> [usize; 2] {
+    let vehicle = plan.vehicles.get(index).map_or(index, |planned| planned.vehicle);
+    let earlier = plan.vehicles.iter().take(index).filter(|planned| planned.vehicle == vehicle);
+    [vehicle + 1, earlier.count() + 1]
+}
+
+/// The name of a flight: its vehicle's number and, where that flies several times, which of its flights it is: "2 flight 3".
+#[must_use]
+pub fn flight(plan: &Plan, index: usize) -> String {
+    let [vehicle, flight] = flight_numbers(plan, index);
+    match plan.vehicles.iter().filter(|planned| planned.vehicle + 1 == vehicle).count() {
+        0 | 1 => vehicle.to_string(),
+        _ => format!("{vehicle} flight {flight}"),
+    }
+}
+
+/// The same for the name of a file: `vehicle-2` or `vehicle-2-flight-3`, after another word than `vehicle` if need be.
+#[must_use]
+pub fn flight_file(word: &str, plan: &Plan, index: usize) -> String {
+    format!("{word}-{}", flight(plan, index).replace(' ', "-"))
 }
 
 /// How a solve ended.

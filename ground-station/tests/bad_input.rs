@@ -114,7 +114,9 @@ fn the_complete_file_is_right() {
 
 #[test]
 fn missing_keys_are_named_or_have_a_default() {
-    const NEEDED: [&str; 8] = [
+    const NEEDED: [&str; 10] = [
+        "camera.horizontal_view",
+        "camera.vertical_view",
         "origin.latitude",
         "origin.longitude",
         "depot.latitude",

@@ -148,3 +148,38 @@ fn the_field_for_ardupilot() -> Result<(), Box<dyn Error>> {
 fn the_pasture() -> Result<(), Box<dyn Error>> {
     plan_and_look(missions().join("pasture.toml"), 8)
 }
+
+/// One vehicle with too small a battery for all targets flies several times; every file and table says which flight it is about.
+#[test]
+fn batteries_are_swapped_and_pictures_are_looked_for() -> Result<(), Box<dyn Error>> {
+    let home = tempfile::tempdir()?;
+    let field = std::fs::read_to_string(missions().join("field.toml"))?;
+    let text = field
+        .replace("vehicles = 3", "vehicles = 2\nswap_time = 30.0")
+        .replace("endurance = 900.0", "endurance = 22.0")
+        .replace("[loiter]", "[camera]\nhorizontal_view = 62.0\nvertical_view = 48.0\nmount_yaw = 90.0\nmount_pitch = 20.0\nmount = \"gimbal\"\n\n[loiter]");
+    let file = home.path().join("m.toml");
+    std::fs::write(&file, text)?;
+    let out = home.path().join("out");
+    let text = plan(&request(file, out.clone()))?;
+    for wanted in [
+        "1 flight 1 ",
+        "2 flight 2 ",
+        "with batteries swapped on the pads",
+        "vehicle 1 flight 2",
+        "in the picture",
+    ] {
+        assert!(text.contains(wanted), "{wanted}: {text}");
+    }
+    for name in ["vehicle-1-flight-2.csv", "vehicle-2-flight-1.plan", "profile-2-flight-2.svg"] {
+        assert!(out.join(name).exists(), "{name}");
+    }
+    let document: PlanDocument = serde_json::from_str(&std::fs::read_to_string(out.join("plan.json"))?)?;
+    let flights: Vec<_> = document.vehicles.iter().map(|entry| (entry.vehicle, entry.flight)).collect();
+    assert_eq!(flights[..3], [(1, 1), (2, 1), (1, 2)], "{flights:?}");
+    assert_eq!(document.mission.swap_time_s, Some(30.0));
+    assert!(document.targets.iter().all(|target| target.share_in_view.is_some()));
+    let map = std::fs::read_to_string(out.join("map.svg"))?;
+    assert!(map.contains("vehicle 1 flight 2: "));
+    Ok(())
+}

@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::input::MissionFile;
 use crate::plot::{map, map_scene, profile, vehicle_profile};
 use crate::report::warning_lines;
+use crate::words;
 use planner::{Plan, Sample, VehiclePlan};
 
 /// The files of a plan and what the operator should know.
@@ -35,15 +36,17 @@ pub fn outputs(file: &MissionFile, plan: &Plan, rate: f64) -> Result<Outputs, Fa
     let mut files = Vec::new();
     let mut tracks = Vec::new();
     for index in 0..plan.vehicles.len() {
-        let number = index + 1;
         let samples = sampled(file, plan, index, rate)?;
         files.push(OutputFile {
-            name: format!("vehicle-{number}.csv"),
+            name: format!("{}.csv", words::flight_file("vehicle", plan, index)),
             content: trajectory_csv(&samples, &plan.circles),
         });
         let samples = sampled(file, plan, index, PICTURE_RATE)?;
         let picture = profile(&vehicle_profile(file, plan, index, &samples));
-        files.push(OutputFile { name: format!("profile-{number}.svg"), content: picture });
+        files.push(OutputFile {
+            name: format!("{}.svg", words::flight_file("profile", plan, index)),
+            content: picture,
+        });
         files.extend(autopilot_mission(file, plan, index, &mut notes)?);
         tracks.push(samples);
     }
@@ -77,7 +80,7 @@ fn autopilot_mission(
         Way::of_missions(file.autopilot),
         &origin,
     );
-    let name = format!("vehicle-{}.plan", index + 1);
+    let name = format!("{}.plan", words::flight_file("vehicle", plan, index));
     notes.add(&name, mission.notes);
     if plan.vehicles.iter().filter(|vehicle| !vehicle.legs.is_empty()).count() > 1 {
         notes.add(&name, vec![TIMES_NOT_KEPT.to_owned()]);

@@ -6,6 +6,7 @@ use crate::export::members;
 use crate::failure::Failure;
 use crate::input::{self, MissionFile};
 use crate::report::{self, VehicleRow, worst_of};
+use crate::words;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use planner::{Miss, Options, Plan, Tolerances, Transcription, VehiclePlan};
 use std::path::{Path, PathBuf};
@@ -47,7 +48,7 @@ pub fn plan(request: &PlanRequest) -> Result<String, Failure> {
     if request.verify {
         let verification = plan.verify(&file.mission, &Tolerances::default());
         text.push('\n');
-        text.push_str(&report::verification_text(&verification));
+        text.push_str(&report::verification_text(&verification, &|flight| words::flight(&plan, flight)));
         if !verification.passed() {
             return Err(Failure::Verification { report: text, failures: verification.failures });
         }
@@ -96,7 +97,7 @@ pub(crate) fn search(file: &MissionFile, quiet: bool) -> Result<Plan, Failure> {
 fn summary(file: &MissionFile, plan: &Plan) -> Result<String, Failure> {
     let mut text = report::vehicle_table(&rows(file, plan)?).render();
     text.push('\n');
-    for line in report::certificate_lines(plan) {
+    for line in report::certificate_lines(plan).into_iter().chain(report::camera_line(&file.mission, plan)) {
         text.push_str(&format!("{line}\n"));
     }
     Ok(text)
@@ -114,6 +115,7 @@ fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> 
     let [top_speed, top_tilt] = extremes(vehicle, &sampled(file, plan, index, RATE)?);
     let circles = || vehicle.route.iter().filter_map(|&circle| plan.circles.get(circle));
     Ok(VehicleRow {
+        name: words::flight(plan, index),
         targets: circles().map(members).collect::<Vec<_>>().join(" "),
         count: circles().map(|circle| circle.members.len()).sum(),
         length: vehicle.length(),

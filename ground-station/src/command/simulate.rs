@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::input::MissionFile;
 use crate::plot::{MapVehicle, map, map_scene};
 use crate::report::Table;
+use crate::words;
 use planner::quad_dynamics::nalgebra::Vector3;
 use planner::quad_dynamics::simulation::{SensorNoise, SimulationOptions};
 use planner::{Flown, Plan, Tolerances, Verification};
@@ -63,12 +64,12 @@ pub fn simulate(request: &SimulateRequest) -> Result<String, Failure> {
     let log = events(&plan, &team, log);
     let mut files = vec![OutputFile { name: "events.log".into(), content: log }];
     for flown in &team {
-        let name = format!("flown-{}.csv", flown.vehicle + 1);
+        let name = format!("{}.csv", words::flight_file("flown", &plan, flown.vehicle));
         files.push(OutputFile { name, content: flown_csv(&file, &plan, flown)? });
     }
     files.push(OutputFile { name: "flown.svg".into(), content: picture(&file, &plan, &team)? });
     folder::write_files(&request.out, &files, request.force)?;
-    let mut text = table(&team).render();
+    let mut text = table(&plan, &team).render();
     if is_eventful {
         text.push_str(&stands(&plan.verify(&file.mission, &Tolerances::default())));
     }
@@ -99,7 +100,7 @@ fn stands(verification: &Verification) -> String {
     format!("the plan with its changes fails the independent check:\n{}", lines.collect::<String>())
 }
 
-fn table(team: &[Flown]) -> Table {
+fn table(plan: &Plan, team: &[Flown]) -> Table {
     let mut table = Table::new(&[
         "vehicle",
         "flown",
@@ -112,7 +113,7 @@ fn table(team: &[Flown]) -> Table {
     for flown in team {
         let tracking = &flown.tracking;
         table.push(vec![
-            (flown.vehicle + 1).to_string(),
+            words::flight(plan, flown.vehicle),
             format!("{:.0} %", 100.0 * tracking.completed),
             format!("{:.3} m", tracking.rms_error),
             format!("{:.3} m", tracking.max_error),
@@ -127,7 +128,7 @@ fn table(team: &[Flown]) -> Table {
 /// What happens in the order of time: events, take-offs, circles, landings, and safe distances that were broken.
 fn events(plan: &Plan, team: &[Flown], mut events: Vec<(f64, String)>) -> String {
     for flown in team {
-        let number = flown.vehicle + 1;
+        let number = words::flight(plan, flown.vehicle);
         let vehicle = &plan.vehicles[flown.vehicle];
         events.push((vehicle.start_time(), format!("vehicle {number} takes off")));
         for leg in &vehicle.legs {
@@ -190,7 +191,7 @@ fn picture(file: &MissionFile, plan: &Plan, team: &[Flown]) -> Result<String, Fa
             track,
             caption: format!(
                 "vehicle {} as flown: at most {:.2} m off",
-                flown.vehicle + 1,
+                words::flight(plan, flown.vehicle),
                 flown.tracking.max_error
             ),
         });

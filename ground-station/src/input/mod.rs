@@ -131,10 +131,12 @@ fn read_root(
     let autopilot = root.choice("autopilot", &words::AUTOPILOTS);
     let frame = Frame::of(origin);
     let (listed, merge_within) = targets::read(root, reader, frame, folder);
-    let fleet = settings::fleet(root, reader)?;
+    let (fleet, swap_time) = settings::fleet(root, reader)?;
     let targets = listed.iter().map(|listed| listed.target.clone()).collect();
     let mut mission = Mission::new(fleet.vehicle.clone(), fleet.vehicles, targets);
     mission.fleet = fleet;
+    mission.swap_time = swap_time;
+    mission.camera = settings::camera(root);
     mission.name = name;
     mission.merge_within = merge_within;
     mission.depot = settings::depot(root, frame).unwrap_or(mission.depot);

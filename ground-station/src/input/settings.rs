@@ -1,11 +1,14 @@
-//! The settings of a mission: `[depot]`, `[fleet]`, `[loiter]` and `[transition]`.
+//! The settings of a mission: `[depot]`, `[fleet]`, `[camera]`, `[loiter]` and `[transition]`.
 
 use super::range::Range;
 use super::reader::{Reader, Section};
 use super::targets::{Frame, position};
 use super::vehicle;
 use crate::words::{MODELS, TRANSCRIPTIONS};
-use planner::{Entries, Environment, Fleet, LoiterSettings, LoiterYaw, ShapingLimits, TransitionSettings};
+use planner::quad_dynamics::Camera;
+use planner::{
+    CameraSettings, Entries, Environment, Fleet, LoiterSettings, LoiterYaw, ShapingLimits, TransitionSettings,
+};
 
 /// Words for [`LoiterYaw`].
 const YAWS: [(&str, LoiterYaw); 2] =
@@ -23,9 +26,10 @@ pub fn depot(root: &Section<'_, '_>, frame: Frame) -> Option<[f64; 2]> {
     place
 }
 
-/// `[fleet]` and `[vehicle]`; how many vehicles there are must be said.
-pub fn fleet(root: &Section<'_, '_>, reader: &Reader<'_>) -> Option<Fleet> {
+/// `[fleet]` and `[vehicle]`, and the time to swap a battery; how many vehicles there are must be said.
+pub fn fleet(root: &Section<'_, '_>, reader: &Reader<'_>) -> Option<(Fleet, Option<f64>)> {
     let section = root.section("fleet");
+    let swap_time = section.number("swap_time", Range::NOT_NEGATIVE);
     let vehicles = section.count("vehicles", 1, MOST_VEHICLES);
     if !section.has("vehicles") {
         section.missing("vehicles", "give the number of vehicles, at least 1");
@@ -39,7 +43,30 @@ pub fn fleet(root: &Section<'_, '_>, reader: &Reader<'_>) -> Option<Fleet> {
         endurance: section.number("endurance", Range::POSITIVE).unwrap_or(f64::INFINITY),
     });
     section.finish();
-    fleet
+    fleet.map(|fleet| (fleet, swap_time))
+}
+
+/// `[camera]`; angles in degrees. Nothing without the table.
+pub fn camera(root: &Section<'_, '_>) -> Option<CameraSettings> {
+    const VIEWS: Range = Range::between(1.0, 179.0);
+    const ANGLES: Range = Range::between(-180.0, 180.0);
+    const MOUNTS: [(&str, bool); 2] = [("fixed", false), ("gimbal", true)];
+    let section = root.section("camera");
+    let angle = |key, range| section.number(key, range).map(f64::to_radians);
+    let views = ["horizontal_view", "vertical_view"].map(|key| {
+        if section.is_present() && !section.has(key) {
+            section.missing(key, "give the whole angles of view across and up and down, in degrees");
+        }
+        angle(key, VIEWS)
+    });
+    let [yaw, pitch] = ["mount_yaw", "mount_pitch"].map(|key| angle(key, ANGLES).unwrap_or(0.0));
+    let is_stabilised = section.choice("mount", &MOUNTS).unwrap_or(false);
+    let target_height = section.number("target_height", Range::NOT_NEGATIVE).unwrap_or(0.0);
+    section.finish();
+    let [across, up] = views;
+    // What the ranges above let through is a camera.
+    let camera = Camera::new(across?, up?).ok()?.with_mount(yaw, pitch).with_stabilised(is_stabilised);
+    Some(CameraSettings { camera, target_height })
 }
 
 /// `[environment]`: the steady wind that is planned for.

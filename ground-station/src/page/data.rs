@@ -7,7 +7,7 @@ use crate::export::qgc::vehicle_mission;
 use crate::failure::Failure;
 use crate::input::MissionFile;
 use crate::plot::{self, vehicle_profile};
-use crate::report::{certificate_lines, execution_table, vehicle_table, warning_lines};
+use crate::report::{camera_line, certificate_lines, execution_table, vehicle_table, warning_lines};
 use crate::words;
 use planner::{Plan, Sample};
 use serde::Serialize;
@@ -50,7 +50,8 @@ pub struct TargetData {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct VehicleData {
-    pub number: usize,
+    /// Its number, and which of its flights where it has several.
+    pub name: String,
     pub colour: &'static str,
     pub pad: [f64; 2],
     pub start: f64,
@@ -111,8 +112,8 @@ impl PageData {
             .collect();
         let mut warnings = warning_lines(plan);
         for (index, execution) in executions.iter().enumerate() {
-            warnings
-                .extend(execution.warnings.iter().map(|warning| format!("vehicle {}: {warning}", index + 1)));
+            let name = words::flight(plan, index);
+            warnings.extend(execution.warnings.iter().map(|warning| format!("vehicle {name}: {warning}")));
         }
         let autopilot = words::word(&words::AUTOPILOTS, &file.autopilot);
         let name = if mission.name.is_empty() { "mission" } else { &mission.name };
@@ -127,8 +128,8 @@ impl PageData {
             vehicles: (tracks.iter().enumerate()).map(|(index, track)| vehicle(plan, index, track)).collect(),
             charts: charts(file, plan),
             table: vehicle_table(&rows(file, plan)?).rows().to_vec(),
-            execution: execution_table(&executions).rows().to_vec(),
-            certificate: certificate_lines(plan),
+            execution: execution_table(plan, &executions).rows().to_vec(),
+            certificate: certificate_lines(plan).into_iter().chain(camera_line(mission, plan)).collect(),
             warnings,
         })
     }
@@ -167,7 +168,7 @@ fn vehicle(plan: &Plan, index: usize, track: &[Sample]) -> VehicleData {
         Some(CircleData { label: members(circle), east, north, radius: circle.radius })
     };
     VehicleData {
-        number: index + 1,
+        name: words::flight(plan, index),
         colour: plot::colour(index),
         pad: [planned.pad[0], planned.pad[1]],
         start: planned.start_time(),

@@ -62,9 +62,9 @@ function drawMap() {
   element(depot, "text", { x: 8, y: 16, class: "halo" }, "depot");
   fixed.push([depot, data.depot]);
   for (const vehicle of data.vehicles) {
-    vehicle.mark = element(overlay, "g", { class: "vehicle", "data-vehicle": vehicle.number });
+    vehicle.mark = element(overlay, "g", { class: "vehicle", "data-vehicle": vehicle.name });
     vehicle.arrow = element(vehicle.mark, "path", { d: "M0,-11 L7,8 L0,4 L-7,8 Z", fill: vehicle.colour, stroke: "#fff" });
-    element(vehicle.mark, "text", { x: 9, y: -7, class: "halo" }, vehicle.number);
+    element(vehicle.mark, "text", { x: 9, y: -7, class: "halo" }, vehicle.name);
   }
   element(map, "line", { id: "scale", stroke: "#222", "stroke-width": 2 });
   element(map, "text", { id: "scale-text", class: "halo" });
@@ -235,7 +235,7 @@ function fillLegend() {
     const swatch = label.appendChild(document.createElement("span"));
     swatch.className = "swatch";
     swatch.style.background = vehicle.colour;
-    label.appendChild(document.createElement("span")).textContent = `vehicle ${vehicle.number}`;
+    label.appendChild(document.createElement("span")).textContent = `vehicle ${vehicle.name}`;
     vehicle.state = label.appendChild(document.createElement("span"));
     vehicle.state.className = "state";
     box.addEventListener("change", () => {

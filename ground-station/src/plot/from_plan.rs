@@ -24,8 +24,13 @@ pub fn map_scene(file: &MissionFile, plan: &Plan, tracks: &[Vec<Sample>]) -> Map
             Some(MapCircle { centre: circle.centre, radius: circle.radius, direction, entry })
         });
         let caption = match vehicle.legs.is_empty() {
-            true => format!("vehicle {}: at the depot", index + 1),
-            false => format!("vehicle {}: {:.1} s, {:.0} m", index + 1, vehicle.duration(), vehicle.length()),
+            true => format!("vehicle {}: at the depot", words::flight(plan, index)),
+            false => format!(
+                "vehicle {}: {:.1} s, {:.0} m",
+                words::flight(plan, index),
+                vehicle.duration(),
+                vehicle.length()
+            ),
         };
         let track = track.iter().map(|sample| [sample.position[0], sample.position[1]]).collect();
         MapVehicle { pad: [vehicle.pad[0], vehicle.pad[1]], circles: circles.collect(), track, caption }
@@ -44,7 +49,7 @@ pub fn vehicle_profile(file: &MissionFile, plan: &Plan, vehicle: usize, samples:
     });
     let column = |of: fn(&Sample) -> f64| samples.iter().map(of).collect();
     Profile {
-        title: format!("{}: vehicle {}", title_of(file), vehicle + 1),
+        title: format!("{}: vehicle {}", title_of(file), words::flight(plan, vehicle)),
         vehicle,
         times: column(|sample| sample.time),
         panels: vec![

@@ -8,11 +8,13 @@ pub use warnings::warning_lines;
 
 use crate::execution::{CircleOutcome, Execution};
 use crate::words;
-use planner::{Miss, Plan, VehiclePlan, Verification};
+use planner::{Miss, Mission, Plan, VehiclePlan, Verification};
 
 /// A vehicle's line of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleRow {
+    /// The vehicle, and which of its flights: "2", "2 flight 3".
+    pub name: String,
     /// The targets in the order of its route: "3 1 4+5".
     pub targets: String,
     /// How many they are.
@@ -53,14 +55,14 @@ pub fn vehicle_table(rows: &[VehicleRow]) -> Table {
         "top tilt",
         "worst integrated miss",
     ]);
-    for (index, row) in rows.iter().enumerate() {
-        table.push(cells((index + 1).to_string(), row));
+    for row in rows.iter().chain([&team_row(rows)]) {
+        table.push(cells(row));
     }
-    table.push(cells("team".to_owned(), &team_row(rows)));
     table
 }
 
-fn cells(name: String, row: &VehicleRow) -> Vec<String> {
+fn cells(row: &VehicleRow) -> Vec<String> {
+    let name = row.name.clone();
     if row.count == 0 {
         return vec![name, "none: stays at the depot".to_owned()];
     }
@@ -88,6 +90,7 @@ fn team_row(rows: &[VehicleRow]) -> VehicleRow {
     let sum = |of: fn(&VehicleRow) -> f64| rows.iter().map(of).sum();
     let most = |of: fn(&VehicleRow) -> f64| rows.iter().map(of).fold(0.0, f64::max);
     VehicleRow {
+        name: "team".to_owned(),
         targets: String::new(),
         count: rows.iter().map(|row| row.count).sum(),
         length: sum(|row| row.length),
@@ -149,12 +152,26 @@ pub fn certificate_lines(plan: &Plan) -> Vec<String> {
         lines.push(format!(
             "closest approach {:.2} m: vehicles {} and {} at {:.2} s",
             approach.distance,
-            approach.vehicles[0] + 1,
-            approach.vehicles[1] + 1,
+            words::flight(plan, approach.vehicles[0]),
+            words::flight(plan, approach.vehicles[1]),
             approach.time
         ));
     }
     lines
+}
+
+/// The share of its circle during which each target is in the picture; nothing without a camera.
+#[must_use]
+pub fn camera_line(mission: &Mission, plan: &Plan) -> Option<String> {
+    let shares = plan.shares_in_view(mission)?;
+    let partly: Vec<String> = (shares.iter().enumerate())
+        .filter(|(_, share)| **share < 1.0)
+        .map(|(target, share)| format!("target {} {:.0} %", target + 1, 100.0 * share))
+        .collect();
+    Some(match partly.is_empty() {
+        true => "in the picture: every target all the way round its circle".to_owned(),
+        false => format!("in the picture for a part of its circle only: {}", partly.join(", ")),
+    })
 }
 
 /// What entries chosen for the whole route gain over the fastest entry of every leg by itself, if anything.
@@ -172,7 +189,7 @@ fn gain_line(plan: &Plan) -> Option<String> {
 
 /// How every vehicle flies its plan and what becomes of its circles.
 #[must_use]
-pub fn execution_table(executions: &[Execution]) -> Table {
+pub fn execution_table(plan: &Plan, executions: &[Execution]) -> Table {
     let mut table = Table::new(&["vehicle", "way", "takes", "circles: radius flown, angle seen"]);
     for (index, execution) in
         executions.iter().enumerate().filter(|(_, execution)| !execution.circles.is_empty())
@@ -181,7 +198,7 @@ pub fn execution_table(executions: &[Execution]) -> Table {
             format!("{}: {:.1} m, {:.0} deg", circle.name, circle.radius, circle.seen.to_degrees())
         };
         table.push(vec![
-            (index + 1).to_string(),
+            words::flight(plan, index),
             words::word(&words::WAYS, &execution.way).to_owned(),
             format!("{:.1} s", execution.duration),
             execution.circles.iter().map(circle).collect::<Vec<_>>().join("; "),
@@ -190,9 +207,9 @@ pub fn execution_table(executions: &[Execution]) -> Table {
     table
 }
 
-/// What the independent check saw: the worst of every vehicle and of all.
+/// What the independent check saw: the worst of every flight and of all; `name` is that of a flight (from 0).
 #[must_use]
-pub fn verification_text(verification: &Verification) -> String {
+pub fn verification_text(verification: &Verification, name: &dyn Fn(usize) -> String) -> String {
     let mut table =
         Table::new(&["verified", "legs", "worst integrated miss", "worst bound overstep", "least clearance"]);
     let vehicles = verification.legs.iter().map(|leg| leg.vehicle + 1).max().unwrap_or(0);
@@ -206,7 +223,7 @@ pub fn verification_text(verification: &Verification) -> String {
             bound = bound.max(leg.bound_violation);
             clearance = clearance.min(leg.clearance);
         }
-        let name = if vehicle == vehicles { "all".to_owned() } else { format!("vehicle {}", vehicle + 1) };
+        let name = if vehicle == vehicles { "all".to_owned() } else { format!("vehicle {}", name(vehicle)) };
         if count > 0 {
             let clearance = if clearance.is_finite() { format!("{clearance:.3} m") } else { "-".to_owned() };
             table.push(vec![name, count.to_string(), miss_text(&miss), format!("{bound:.1e}"), clearance]);
@@ -222,6 +239,7 @@ mod tests {
 
     fn row(count: usize, targets: &str) -> VehicleRow {
         VehicleRow {
+            name: "1".into(),
             targets: targets.into(),
             count,
             length: 100.0,
@@ -240,7 +258,9 @@ mod tests {
     fn the_table_names_every_vehicle_and_sums_the_team() {
         let spare =
             VehicleRow { length: 0.0, transit: 0.0, loiters: 0.0, total: 0.0, energy: 0.0, ..row(0, "") };
-        let text = vehicle_table(&[row(3, "3 1 4"), row(2, "2+5"), spare]).render();
+        let named = |name: &str, row: VehicleRow| VehicleRow { name: name.into(), ..row };
+        let rows = [row(3, "3 1 4"), named("2", row(2, "2+5")), named("3", spare)];
+        let text = vehicle_table(&rows).render();
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[0].starts_with("vehicle  targets") && lines[0].ends_with("worst integrated miss"));
         assert!(
@@ -269,7 +289,7 @@ mod tests {
             legs: vec![check(0, 0, 0.01), check(0, 1, 0.02), check(2, 0, 0.03)],
             failures: vec![],
         };
-        let text = verification_text(&verification);
+        let text = verification_text(&verification, &|vehicle| (vehicle + 1).to_string());
         let lines: Vec<&str> = text.lines().skip(2).collect();
         assert_eq!(lines.len(), 3, "{text}");
         assert!(

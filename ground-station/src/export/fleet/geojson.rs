@@ -20,10 +20,10 @@ pub fn text(scene: &Scene) -> Result<String, Failure> {
     }
     for vehicle in &scene.vehicles {
         for (targets, ring) in &vehicle.circles {
-            let properties = json!({"kind": "circle", "vehicle": vehicle.number, "targets": targets});
+            let properties = json!({"kind": "circle", "vehicle": vehicle.flight[0], "flight": vehicle.flight[1], "targets": targets});
             features.push(feature(GeometryValue::new_line_string(ring.iter().map(solid)), properties));
         }
-        let properties = json!({"kind": "path", "vehicle": vehicle.number, "times_s": vehicle.times});
+        let properties = json!({"kind": "path", "vehicle": vehicle.flight[0], "flight": vehicle.flight[1], "times_s": vehicle.times});
         features.push(feature(GeometryValue::new_line_string(vehicle.path.iter().map(solid)), properties));
     }
     let collection = FeatureCollection { bbox: None, features, foreign_members: None };

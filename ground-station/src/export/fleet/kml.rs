@@ -49,7 +49,7 @@ fn document(scene: &Scene) -> io::Result<Vec<u8>> {
 }
 
 fn flight(xml: &mut Xml, vehicle: &Vehicle) -> io::Result<()> {
-    folder(xml, &format!("vehicle {}", vehicle.number), |xml| {
+    folder(xml, &format!("vehicle {}", vehicle.name), |xml| {
         for (targets, ring) in &vehicle.circles {
             placemark(xml, &format!("circle around {targets}"), vehicle.number, |xml| {
                 within(xml, BytesStart::new("LineString"), |xml| {
@@ -58,7 +58,7 @@ fn flight(xml: &mut Xml, vehicle: &Vehicle) -> io::Result<()> {
                 })
             })?;
         }
-        placemark(xml, &format!("flight of vehicle {}", vehicle.number), vehicle.number, |xml| {
+        placemark(xml, &format!("flight of vehicle {}", vehicle.name), vehicle.number, |xml| {
             within(xml, BytesStart::new("gx:Track"), |xml| {
                 leaf(xml, "altitudeMode", "relativeToGround")?;
                 vehicle.times.iter().try_for_each(|&time| leaf(xml, "when", &moment(time)))?;
@@ -74,7 +74,7 @@ fn flight(xml: &mut Xml, vehicle: &Vehicle) -> io::Result<()> {
 /// The camera flies along, once a second, looking ahead and down.
 fn tour(xml: &mut Xml, vehicle: &Vehicle) -> io::Result<()> {
     within(xml, BytesStart::new("gx:Tour"), |xml| {
-        leaf(xml, "name", &format!("fly with vehicle {}", vehicle.number))?;
+        leaf(xml, "name", &format!("fly with vehicle {}", vehicle.name))?;
         within(xml, BytesStart::new("gx:Playlist"), |xml| {
             let mut last = f64::NEG_INFINITY;
             for ((&time, place), heading) in vehicle.times.iter().zip(&vehicle.path).zip(&vehicle.headings) {

@@ -21,6 +21,7 @@ use crate::failure::Failure;
 use crate::geodesy::Origin;
 use crate::input::{Autopilot, MissionFile};
 use crate::link::item::MissionItem;
+use crate::words;
 use planner::Plan;
 use scene::Scene;
 
@@ -106,7 +107,10 @@ fn missions(
             Format::Plan => ("plan", mission.to_text().map_err(|source| Failure::Format { source })?),
             _ => ("waypoints", waypoints(&MissionItem::of_plan(&mission, file.autopilot), file.autopilot)),
         };
-        files.push(OutputFile { name: format!("vehicle-{}.{end}", index + 1), content });
+        files.push(OutputFile {
+            name: format!("{}.{end}", words::flight_file("vehicle", plan, index)),
+            content,
+        });
     }
     Ok(files)
 }
@@ -129,7 +133,10 @@ fn tables(file: &MissionFile, plan: &Plan, scene: &Scene, rate: f64) -> Result<V
     for index in 0..plan.vehicles.len() {
         let samples = sampled(file, plan, index, rate)?;
         let content = trajectory_csv(&samples, &plan.circles);
-        files.push(OutputFile { name: format!("vehicle-{}.csv", index + 1), content });
+        files.push(OutputFile {
+            name: format!("{}.csv", words::flight_file("vehicle", plan, index)),
+            content,
+        });
     }
     Ok(files)
 }
@@ -148,7 +155,8 @@ fn warnings(file: &MissionFile, plan: &Plan, way: Way, rate: f64) -> Result<Vec<
             vehicle.duration(),
             &samples,
         );
-        lines.extend(outcome.warnings.iter().map(|warning| format!("vehicle {}: {warning}", index + 1)));
+        let name = words::flight(plan, index);
+        lines.extend(outcome.warnings.iter().map(|warning| format!("vehicle {name}: {warning}")));
     }
     Ok(lines)
 }

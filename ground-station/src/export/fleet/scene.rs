@@ -5,6 +5,7 @@ use crate::export::members;
 use crate::failure::Failure;
 use crate::geodesy::Origin;
 use crate::input::MissionFile;
+use crate::words;
 use planner::{Plan, Target};
 use std::f64::consts::TAU;
 
@@ -24,6 +25,10 @@ pub struct Scene {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vehicle {
     pub number: usize,
+    /// Its vehicle, and which of its flights where that has several.
+    pub name: String,
+    /// The same as numbers.
+    pub flight: [usize; 2],
     pub circles: Vec<(String, Vec<Point>)>,
     /// Seconds after the mission's start.
     pub times: Vec<f64>,
@@ -57,6 +62,8 @@ impl Scene {
             };
             vehicles.push(Vehicle {
                 number: index + 1,
+                name: words::flight(plan, index),
+                flight: words::flight_numbers(plan, index),
                 circles: circles.collect(),
                 times: samples.iter().map(|sample| (sample.time * 1e3).round() / 1e3).collect(),
                 path: samples.iter().map(|s| point([s.position[0], s.position[1]], s.position[2])).collect(),

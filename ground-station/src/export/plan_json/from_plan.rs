@@ -20,7 +20,7 @@ impl PlanDocument {
             format: FORMAT.to_owned(),
             version: VERSION,
             mission: mission_entry(file),
-            targets: target_entries(file),
+            targets: target_entries(file, plan),
             circles: plan
                 .circles
                 .iter()
@@ -30,7 +30,7 @@ impl PlanDocument {
             team: team_entry(plan),
             certificate: certificate_entry(plan),
             closest_approach: plan.closest_approach.map(|approach| ApproachEntry {
-                vehicles: approach.vehicles.map(|vehicle| vehicle + 1),
+                vehicles: approach.vehicles.map(|flight| words::flight_numbers(plan, flight)[0]),
                 time_s: approach.time,
                 distance_m: approach.distance,
             }),
@@ -39,7 +39,7 @@ impl PlanDocument {
                 .vehicles
                 .iter()
                 .enumerate()
-                .map(|(index, vehicle)| vehicle_entry(index, vehicle))
+                .map(|(index, vehicle)| vehicle_entry(plan, index, vehicle))
                 .collect(),
         }
     }
@@ -73,10 +73,12 @@ fn mission_entry(file: &MissionFile) -> MissionEntry {
         depot_north_m: mission.depot[1],
         separation_m: mission.fleet.separation,
         endurance_s: finite(mission.fleet.endurance),
+        swap_time_s: mission.swap_time,
     }
 }
 
-fn target_entries(file: &MissionFile) -> Vec<TargetEntry> {
+fn target_entries(file: &MissionFile, plan: &Plan) -> Vec<TargetEntry> {
+    let shares = plan.shares_in_view(&file.mission).unwrap_or_default();
     let common = file.mission.transition.safe_distance;
     let entry = |(index, target): (usize, &planner::Target)| TargetEntry {
         target: index + 1,
@@ -84,6 +86,7 @@ fn target_entries(file: &MissionFile) -> Vec<TargetEntry> {
         east_m: target.position[0],
         north_m: target.position[1],
         safe_distance_m: target.safe_distance.unwrap_or(common),
+        share_in_view: shares.get(index).copied(),
     };
     file.mission.targets.iter().enumerate().map(entry).collect()
 }
@@ -124,9 +127,11 @@ fn certificate_entry(plan: &Plan) -> CertificateEntry {
     }
 }
 
-fn vehicle_entry(index: usize, vehicle: &VehiclePlan) -> VehicleEntry {
+fn vehicle_entry(plan: &Plan, index: usize, vehicle: &VehiclePlan) -> VehicleEntry {
+    let [number, flight] = words::flight_numbers(plan, index);
     VehicleEntry {
-        vehicle: index + 1,
+        vehicle: number,
+        flight,
         pad_east_m: vehicle.pad[0],
         pad_north_m: vehicle.pad[1],
         pad_up_m: vehicle.pad[2],

@@ -51,6 +51,9 @@ pub struct MissionEntry {
     pub depot_north_m: f64,
     pub separation_m: f64,
     pub endurance_s: Option<f64>,
+    /// Time to swap a battery, where vehicles may fly several times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub swap_time_s: Option<f64>,
 }
 
 /// Where east and north are zero.
@@ -71,6 +74,9 @@ pub struct TargetEntry {
     pub east_m: f64,
     pub north_m: f64,
     pub safe_distance_m: f64,
+    /// Share of its circle during which it is in the picture; absent without a camera.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub share_in_view: Option<f64>,
 }
 
 /// A circle.
@@ -125,6 +131,8 @@ pub struct ApproachEntry {
 #[allow(missing_docs)]
 pub struct VehicleEntry {
     pub vehicle: usize,
+    /// Which of its flights: further ones follow after those of all vehicles, each with a fresh battery.
+    pub flight: usize,
     pub pad_east_m: f64,
     pub pad_north_m: f64,
     pub pad_up_m: f64,
