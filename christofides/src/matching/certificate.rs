@@ -357,3 +357,47 @@ fn separation<const D: usize>(cell: &Cell<D>, point: &[f64; D]) -> f64 {
     let gap = |k: usize| (cell.low[k] - point[k]).max(point[k] - cell.high[k]).max(0.0);
     (0..D).map(|k| gap(k) * gap(k)).sum::<f64>().sqrt() * (1.0 - 1e-14)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::min_weight_perfect_matching;
+    use crate::matrix::FromFn;
+    use proptest::prelude::*;
+
+    /// An optimum on whole distances, where its duals are exact, with `shift` added to the dual of every vertex.
+    fn shifted(places: &[i32], shift: f64) -> (Matching, Certificate) {
+        let distance = |i: usize, j: usize| f64::from((places[i] - places[j]).abs());
+        let metric = FromFn::metric(places.len(), distance);
+        let mut matching = min_weight_perfect_matching(&metric).unwrap();
+        matching.duals.iter_mut().for_each(|dual| *dual += shift);
+        let proof = certificate(&metric, &matching);
+        (matching, proof)
+    }
+
+    proptest! {
+        /// More in every dual makes edges infeasible by twice as much, which the bound takes back; less makes it weaker
+        /// by what was taken. Between neither and the weight is there more than the rounding that is announced.
+        #[test]
+        fn shifted_duals_prove_no_more(
+            places in prop::collection::vec(-99..99i32, 2..40).prop_map(|mut p| { p.truncate(p.len() / 2 * 2); p }),
+            shift in prop::sample::select(vec![0.0, 0.5, 3.0, 1024.0, 1e6, 1e-3, 1e12, 1.0 / 3.0]),
+        ) {
+            let n = places.len() as f64;
+            let rounding = |matching: &Matching| {
+                let blossoms = matching.blossoms().iter().map(|blossom| blossom.dual);
+                matching.duals().iter().copied().chain(blossoms).map(f64::abs).sum::<f64>() * (n + 4.0) * f64::EPSILON
+            };
+            let (more, proof) = shifted(&places, shift);
+            let lost = more.weight() - proof.lower_bound;
+            prop_assert!(proof.is_consistent && proof.weight == more.weight());
+            prop_assert!((0.0..=2.0 * rounding(&more) + 1e-12).contains(&lost), "{lost} {proof:?}");
+            prop_assert!(rounding(&more) == 0.0 || lost > 0.0);
+            prop_assert!((proof.least_slack + 2.0 * shift).abs() <= 2.0 * rounding(&more));
+            let (less, proof) = shifted(&places, -shift);
+            let lost = less.weight() - n * shift - proof.lower_bound;
+            prop_assert!(proof.least_slack == 0.0 || proof.least_slack >= -2.0 * rounding(&less));
+            prop_assert!(lost.abs() <= (n + 2.0) * rounding(&less) + 1e-12, "{lost} {proof:?}");
+        }
+    }
+}
