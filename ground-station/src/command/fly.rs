@@ -63,11 +63,6 @@ pub fn fly(request: &FlyRequest, tell: &mut dyn FnMut(&str)) -> Result<String, F
     if let Some(why) = request.way.refusal(file.autopilot) {
         return Err(Failure::Refused(why.to_owned()));
     }
-    if request.way == Way::LiveOrbit {
-        return Err(Failure::Refused(
-            "live orbits are not flown by this link: stream, or use --way polygon".into(),
-        ));
-    }
     let listed = request.arrivals.as_deref().map(crate::events::read).transpose()?.unwrap_or_default();
     if request.arrivals.is_some() {
         followable(&file)?;
@@ -154,12 +149,14 @@ pub(super) fn task(
     let samples = sampled(file, plan, index, TRACK_RATE)?;
     let flown = vehicle_mission(file, plan, vehicle);
     let items = match way {
-        Way::Stream => Vec::new(),
+        Way::Stream | Way::LiveOrbit => Vec::new(),
         _ => MissionItem::of_plan(&qgc_mission(&flown, file.autopilot, way, &origin).plan, file.autopilot),
     };
     let warnings = execution(way, file.autopilot, &flown, vehicle.duration(), &samples).warnings;
     let (autopilot, pad, number) = (file.autopilot, vehicle.pad, index + 1);
-    let task = Track::new(&samples).map(|track| Task { number, system, autopilot, way, pad, track, items });
+    let circles = if way == Way::LiveOrbit { flown.circles } else { Vec::new() };
+    let task =
+        Track::new(&samples).map(|track| Task { number, system, autopilot, way, pad, track, items, circles });
     Ok((task, warnings))
 }
 

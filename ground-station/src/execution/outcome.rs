@@ -54,7 +54,10 @@ pub fn execution(
             warnings.extend(shaping_warning(autopilot, samples));
             planned
         }
-        _ => circles.iter().map(|circle| circle.duration).sum::<f64>() + transits(mission),
+        _ => {
+            warnings.extend(straight_warnings(mission));
+            circles.iter().map(|circle| circle.duration).sum::<f64>() + transits(mission)
+        }
     };
     if way != Way::Stream && planned > 0.0 && duration > 1.1 * planned {
         warnings.push(format!(
@@ -76,19 +79,19 @@ fn circle(way: Way, task: &CircleTask) -> CircleOutcome {
         // An estimate, not a measurement: corners are taken at the speed at which the acceleration limit allows the circle.
         Way::Polygon => {
             let speed = task.speed.min((ACCELERATION * task.radius).sqrt());
-            (task.radius, task.sweep * task.radius / speed + GETTING_ON_POLYGON, task.sweep)
+            (task.radius, task.sweep * task.radius / speed + GETTING_ON, task.sweep)
         }
         Way::LiveOrbit => {
             let radius = task.radius.max(ORBIT_RADIUS);
             let speed = task.speed.min((ORBIT_ACCELERATION * radius).sqrt());
-            (radius, task.sweep * radius / speed, task.sweep)
+            (radius, task.sweep * radius / speed + GETTING_ON, task.sweep)
         }
     };
     CircleOutcome { name: task.name.clone(), radius, duration, seen: seen.clamp(0.0, TAU) }
 }
 
-/// Slowing to the first corner and speeding up after the last (s).
-const GETTING_ON_POLYGON: f64 = 2.0;
+/// Slowing to the first corner of a polygon and speeding up after the last, or getting onto an orbit from rest and off it (s).
+const GETTING_ON: f64 = 2.0;
 
 /// One line for all circles of which the same is to be said.
 fn circle_warnings<'a>(circles: impl Iterator<Item = (&'a CircleTask, &'a CircleOutcome)>) -> Vec<String> {
@@ -134,6 +137,32 @@ fn transits(mission: &VehicleMission) -> f64 {
     let last = mission.circles.last().map_or(0.0, |task| task.radius);
     leg(here, mission.pad, mission.return_speed, last);
     sum
+}
+
+/// Where a straight flight between the nearest points of two circles comes inside a safe distance: the plan flies around it, and
+/// only streaming flies the plan.
+fn straight_warnings(mission: &VehicleMission) -> Vec<String> {
+    let pad = ("the pad", mission.pad, 0.0);
+    let stops = mission.circles.iter().map(|task| (task.name.as_str(), task.centre, task.radius));
+    let stops: Vec<_> = [pad].into_iter().chain(stops).chain([pad]).collect();
+    let mut warnings = Vec::new();
+    for pair in stops.windows(2) {
+        let [(from, a, leave), (to, b, reach)] = [pair[0], pair[1]];
+        let length = (b[0] - a[0]).hypot(b[1] - a[1]).max(f64::MIN_POSITIVE);
+        let along = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+        let inside = mission.keep_out.iter().filter_map(|circle| {
+            let [x, y] = [circle.centre[0] - a[0], circle.centre[1] - a[1]];
+            let ahead = (x * along[0] + y * along[1]).clamp(leave, (length - reach).max(leave));
+            let distance = (x - ahead * along[0]).hypot(y - ahead * along[1]);
+            (distance < circle.radius - 1e-6).then_some((distance, circle.radius))
+        });
+        if let Some((distance, radius)) = inside.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            warnings.push(format!(
+                "from {from} to {to} it flies straight, {distance:.1} m from a target with a safe distance of {radius:.1} m"
+            ));
+        }
+    }
+    warnings
 }
 
 /// What to raise so that streamed setpoints pass the autopilot's shaping, if they do not pass as they are.
@@ -187,6 +216,7 @@ const MOST_JERK: f64 = 20.0;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::export::qgc::KeepOut;
     use planner::Direction;
 
     fn mission(radius: f64) -> VehicleMission {
@@ -229,6 +259,22 @@ mod tests {
         mission.circles[0].sweep = 380f64.to_radians();
         let overlap = execution(Way::Stream, Autopilot::ArduPilot, &mission, 20.0, &[]);
         assert!(overlap.warnings.is_empty() && overlap.circles[0].seen == TAU);
+    }
+
+    #[test]
+    fn straight_flights_past_targets_are_said() {
+        let mut mission = mission(2.0);
+        mission.keep_out =
+            [[20.0, 0.0], [10.0, 1.0]].map(|centre| KeepOut { centre, radius: 1.5, room: 0.5 }).to_vec();
+        let text = execution(Way::Polygon, Autopilot::Px4, &mission, 1e9, &[]).warnings.join("\n");
+        assert!(text.contains("from the pad to 1 it flies straight, 1.0 m from a target"), "{text}");
+        assert_eq!(text.matches("flies straight").count(), 2, "{text}");
+        assert!(
+            execution(Way::Stream, Autopilot::Px4, &mission, 1e9, &[])
+                .warnings
+                .iter()
+                .all(|warning| !warning.contains("straight"))
+        );
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! One command to one vehicle, repeated until it is answered; without sockets or clocks.
 
 use super::mission::Target;
-use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, MavResult};
+use mavlink::dialects::common::{
+    COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavMessage, MavResult,
+};
 
 /// Silence after which a command is sent again (s).
 const PATIENCE: f64 = 1.0;
@@ -27,6 +29,8 @@ pub struct Order {
     target: Target,
     command: MavCmd,
     parameters: [f32; 7],
+    /// Latitude and longitude (1e-7 degrees) for those two of the parameters: a place needs whole numbers.
+    place: Option<[i32; 2]>,
     sent: u8,
     send_at: f64,
     answer: Answer,
@@ -36,7 +40,19 @@ impl Order {
     /// A command to be sent from `now` (s) on.
     #[must_use]
     pub fn new(target: Target, command: MavCmd, parameters: [f32; 7], now: f64) -> Self {
-        Self { target, command, parameters, sent: 0, send_at: now, answer: Answer::Open }
+        Self { target, command, parameters, place: None, sent: 0, send_at: now, answer: Answer::Open }
+    }
+
+    /// A command about a place: latitude and longitude (1e-7 degrees) and height above mean sea level (m).
+    #[must_use]
+    pub fn at(
+        target: Target,
+        command: MavCmd,
+        [a, b, c, d]: [f32; 4],
+        (place, height): ([i32; 2], f32),
+        now: f64,
+    ) -> Self {
+        Self { place: Some(place), ..Self::new(target, command, [a, b, c, d, 0.0, 0.0, height], now) }
     }
 
     /// How it stands.
@@ -56,7 +72,26 @@ impl Order {
         }
         let [param1, param2, param3, param4, param5, param6, param7] = self.parameters;
         let (target_system, target_component) = self.target;
-        let message = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+        self.sent += 1;
+        self.send_at = now + PATIENCE;
+        if let Some([x, y]) = self.place {
+            return Some(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+                param1,
+                param2,
+                param3,
+                param4,
+                x,
+                y,
+                z: param7,
+                command: self.command,
+                target_system,
+                target_component,
+                frame: MavFrame::MAV_FRAME_GLOBAL,
+                current: 0,
+                autocontinue: 0,
+            }));
+        }
+        Some(MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
             param1,
             param2,
             param3,
@@ -67,11 +102,8 @@ impl Order {
             command: self.command,
             target_system,
             target_component,
-            confirmation: self.sent,
-        });
-        self.sent += 1;
-        self.send_at = now + PATIENCE;
-        Some(message)
+            confirmation: self.sent - 1,
+        }))
     }
 
     /// Takes a message of the vehicle; answers to other commands are not for us.

@@ -15,6 +15,10 @@ pub enum Mode {
     Return,
     /// Lands where it is.
     Land,
+    /// Climbs after a command to take off.
+    TakeOff,
+    /// Circles a place; entered by `DO_ORBIT` alone.
+    Orbit,
 }
 
 /// PX4 packs a main mode into the third byte and a sub-mode into the fourth.
@@ -27,7 +31,8 @@ impl Mode {
     #[must_use]
     pub fn number(self, autopilot: Autopilot) -> u32 {
         match (autopilot, self) {
-            (Autopilot::ArduPilot, Self::Setpoints) => 4,
+            (Autopilot::ArduPilot, Self::Setpoints | Self::TakeOff) => 4,
+            (Autopilot::ArduPilot, Self::Orbit) => 7,
             (Autopilot::ArduPilot, Self::Mission) => 3,
             (Autopilot::ArduPilot, Self::Hold) => 17,
             (Autopilot::ArduPilot, Self::Return) => 6,
@@ -37,6 +42,8 @@ impl Mode {
             (Autopilot::Px4, Self::Hold) => px4(4, 3),
             (Autopilot::Px4, Self::Return) => px4(4, 5),
             (Autopilot::Px4, Self::Land) => px4(4, 6),
+            (Autopilot::Px4, Self::TakeOff) => px4(4, 2),
+            (Autopilot::Px4, Self::Orbit) => px4(3, 1),
         }
     }
 
@@ -57,7 +64,10 @@ impl Mode {
     #[must_use]
     pub fn name(self, autopilot: Autopilot) -> &'static str {
         match (autopilot, self) {
-            (Autopilot::ArduPilot, Self::Setpoints) => "GUIDED",
+            (Autopilot::ArduPilot, Self::Setpoints | Self::TakeOff) => "GUIDED",
+            (Autopilot::ArduPilot, Self::Orbit) => "CIRCLE",
+            (Autopilot::Px4, Self::TakeOff) => "AUTO.TAKEOFF",
+            (Autopilot::Px4, Self::Orbit) => "ORBIT",
             (Autopilot::ArduPilot, Self::Mission) => "AUTO",
             (Autopilot::ArduPilot, Self::Hold) => "BRAKE",
             (Autopilot::Px4, Self::Setpoints) => "OFFBOARD",

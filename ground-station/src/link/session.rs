@@ -201,7 +201,9 @@ impl Session {
             return;
         }
         let any = |is: fn(&Pilot) -> bool| self.pilots.iter().any(is);
-        let (why, action) = if self.start.is_none() && any(|pilot| is_gone(pilot) || is_safe(pilot.phase())) {
+        let (why, action) = if self.start.is_none()
+            && any(|pilot| is_gone(pilot) || matches!(pilot.phase(), Phase::Safe(..)))
+        {
             ("another vehicle is in trouble before the start", SafeAction::Land)
         } else if any(holds) {
             ("another vehicle holds", SafeAction::Hold)

@@ -27,6 +27,8 @@ pub struct VehicleState {
     pub speed: f64,
     /// Latitude, longitude (degrees).
     pub global: Option<(f64, [f64; 2])>,
+    /// Height above mean sea level (m), as it says.
+    pub altitude: Option<f64>,
     /// Whether it knows its home.
     pub has_home: bool,
     /// Percent left, where it says so.
@@ -67,10 +69,11 @@ impl VehicleState {
                     self.speed = speed.iter().map(|part| part * part).sum::<f64>().sqrt();
                 }
             }
-            MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA { lat, lon, .. })
+            MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA { lat, lon, alt, .. })
                 if (*lat, *lon) != (0, 0) =>
             {
                 self.global = Some((now, [*lat, *lon].map(|degrees| f64::from(degrees) / 1e7)));
+                self.altitude = Some(f64::from(*alt) / 1e3);
             }
             MavMessage::HOME_POSITION(_) => self.has_home = true,
             MavMessage::SYS_STATUS(status) => self.system_status(status),

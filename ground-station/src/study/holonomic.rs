@@ -9,8 +9,8 @@
 use super::tally::Row;
 use super::{Trials, solver};
 use crate::failure::Failure;
-use planner::{Entries, Mission, Options, Pipeline, Plan, Target};
-use std::f64::consts::{FRAC_PI_2, PI};
+use planner::{Entries, Loiter, Mission, Options, Pipeline, Plan, Target};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Runs the study for every distance from the exit to the second circle (in loiter radii), with the vehicle and settings of a
 /// mission.
@@ -29,17 +29,19 @@ pub fn run(
     settings.targets = vec![Target::at([0.0, 0.0])];
     settings.fleet.vehicles = 1;
     settings.merge_within = 0.0;
-    // Entered on the side of the depot, left on the other: the second target is the farther one, and not in the way.
     settings.depot = [-8.0 * radius, 0.0];
-    settings.loiter.sweep = PI;
     // Leg by leg, the fastest of all entries; for the whole route another might be chosen.
     settings.pipeline = Pipeline::Paper;
     settings.transition.entries = Entries::Sampled(entries);
-    let exit = exit(&planner::plan(&settings, &Options::default()).map_err(solver)?)?;
+    // Left on the side away from the depot: the second target is then the farther one, and not in the way to the first.
+    settings.loiter.sweep = PI;
+    let first = first_loiter(&planner::plan(&settings, &Options::default()).map_err(solver)?)?;
+    let sign = f64::from(crate::words::sign(first.entry.direction));
+    settings.loiter.sweep = TAU - (sign * first.entry.angle).rem_euclid(TAU);
     let tallies = trials.run(distances.len(), |cell, draw| {
         let away = (distances[cell] + 1.0) * radius;
-        let bearing = exit[1].atan2(exit[0]) + draw.between(-FRAC_PI_2, FRAC_PI_2);
-        one(&settings, [exit[0] + away * bearing.cos(), exit[1] + away * bearing.sin()])
+        let (sin, cos) = draw.between(-FRAC_PI_2, FRAC_PI_2).sin_cos();
+        one(&settings, [radius + away * cos, away * sin])
     })?;
     let row = |(&x, tally)| Row { series: "ratio of times".to_owned(), x, tally };
     Ok(distances.iter().zip(tallies).map(row).collect())
@@ -51,21 +53,19 @@ fn one(settings: &Mission, second: [f64; 2]) -> Result<f64, Failure> {
     mission.targets.push(Target::at(second));
     let plan = planner::plan(&mission, &Options::default()).map_err(solver)?;
     let leg = plan.vehicles.first().and_then(|vehicle| vehicle.legs.get(1));
-    let (Some(leg), [x, y]) = (leg, exit(&plan)?) else { return Err(solver("no flight between circles")) };
-    let Some(loiter) = leg.loiter else { return Err(solver("no second circle")) };
-    let next = &plan.circles[loiter.circle];
+    let (Some(leg), first) = (leg, first_loiter(&plan)?) else { return Err(solver("no second flight")) };
+    let (circle, next) = (&plan.circles[0], &plan.circles[1]);
+    let sign = f64::from(crate::words::sign(first.entry.direction));
+    let (sin, cos) = (first.entry.angle + sign * circle.sweep).sin_cos();
+    let [x, y] = [circle.centre[0] + circle.radius * cos, circle.centre[1] + circle.radius * sin];
     let distance = (x - next.centre[0]).hypot(y - next.centre[1]) - next.radius;
     Ok(leg.transition.duration / (distance / next.speed))
 }
 
-/// Where the first circle is left (m).
-fn exit(plan: &Plan) -> Result<[f64; 2], Failure> {
-    let first = plan.vehicles.first().and_then(|vehicle| vehicle.legs.first()?.loiter);
-    let loiter = first.ok_or_else(|| solver("no circle"))?;
-    let circle = &plan.circles[loiter.circle];
-    let sign = f64::from(crate::words::sign(loiter.entry.direction));
-    let (sin, cos) = (loiter.entry.angle + sign * circle.sweep).sin_cos();
-    Ok([circle.centre[0] + circle.radius * cos, circle.centre[1] + circle.radius * sin])
+/// The circle around the first target, which is flown first.
+fn first_loiter(plan: &Plan) -> Result<Loiter, Failure> {
+    let loiter = plan.vehicles.first().and_then(|vehicle| vehicle.legs.first()?.loiter);
+    loiter.filter(|loiter| loiter.circle == 0).ok_or_else(|| solver("the first target is not the first"))
 }
 
 #[cfg(test)]

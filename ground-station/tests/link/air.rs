@@ -1,6 +1,7 @@
 //! A session and its vehicles with a bad radio between them and time that only the test moves.
 
 use crate::peer::{Firmware, Peer};
+use crate::wire;
 use ground_station::command::{LivePlan, tasks};
 use ground_station::events;
 use ground_station::execution::Way;
@@ -34,6 +35,8 @@ pub struct Air {
     pub peers: Vec<Peer>,
     pub events: Vec<Event>,
     pub time: f64,
+    /// Share of the vehicles' frames whose content is rubbish, with a right checksum.
+    pub rubbish: f64,
     radio: Radio,
     random: u64,
     up: Vec<(f64, u8, Vec<u8>)>,
@@ -100,6 +103,7 @@ impl Air {
             live: None,
             events: Vec::new(),
             time: 0.0,
+            rubbish: 0.0,
             radio,
             random: seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1,
             up: Vec::new(),
@@ -124,6 +128,23 @@ impl Air {
         self.random ^= self.random >> 7;
         self.random ^= self.random << 17;
         (self.random >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A frame with other bytes, numbers that are none among them, and the checksum of those.
+    fn damaged(&mut self, bytes: &[u8]) -> Vec<u8> {
+        const STRANGE: [[u8; 4]; 5] =
+            [[0, 0, 0xC0, 0x7F], [0, 0, 0x80, 0x7F], [0xFF; 4], [0xFF, 0xFF, 0x7F, 0x7F], [0, 0, 0, 0x80]];
+        let (number, mut payload) = wire::read(bytes).expect("vehicles send frames");
+        for _ in 0..=(3.0 * self.random()) as usize {
+            let at = (self.random() * bytes.len() as f64) as usize;
+            if self.random() < 0.5 {
+                payload[at / 4 * 4..][..4].copy_from_slice(&STRANGE[(5.0 * self.random()) as usize]);
+            } else {
+                payload[at] = (256.0 * self.random()) as u8;
+            }
+        }
+        let system = if self.random() < 0.9 { bytes[5] } else { (256.0 * self.random()) as u8 };
+        wire::frame(system, bytes[4], number, &payload)
     }
 
     /// When copies of a frame arrive.
@@ -155,7 +176,10 @@ impl Air {
         }
         for index in 0..self.peers.len() {
             self.peers[index].advance(self.time);
-            for bytes in self.peers[index].take() {
+            for mut bytes in self.peers[index].take() {
+                if self.random() < self.rubbish {
+                    bytes = self.damaged(&bytes);
+                }
                 for at in self.arrivals(self.down.len()) {
                     self.down.push((at, bytes.clone()));
                 }

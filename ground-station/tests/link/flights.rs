@@ -6,6 +6,7 @@ use ground_station::execution::Way;
 use ground_station::link::pilot::{Outcome, Phase};
 use ground_station::link::session::Request;
 use ground_station::link::settings::{Reach, SafeAction, Settings};
+use std::f64::consts::TAU;
 
 const FAIR: Radio = Radio { loss: 0.05, twice: 0.05, delay: 0.1, room: 0 };
 
@@ -70,6 +71,58 @@ fn missions_are_flown_one_after_the_other() {
         assert_eq!(most, 1);
         assert!(air.peers.iter().all(|peer| !peer.path.is_empty() && peer.setpoints == 0));
     }
+}
+
+/// Circles by live commands, one vehicle after the other: as wide as planned, and all the way round.
+#[test]
+fn px4_circles_by_live_commands() {
+    let mut air = Air::new(Firmware::Px4, Way::LiveOrbit, settings(), FAIR, 8);
+    let mut most = 0;
+    while air.time < 400.0 && !air.session.is_over() {
+        air.tick();
+        most = most.max(air.peers.iter().filter(|peer| peer.armed).count());
+    }
+    assert!(
+        air.session.is_over() && air.session.failures().is_empty(),
+        "{:?}\n{}",
+        air.session.failures(),
+        air.told()
+    );
+    assert_eq!((most, air.told().matches("has circled").count()), (1, 3), "{}", air.told());
+    for (peer, pilot) in air.peers.iter().zip(air.session.pilots()) {
+        assert!(peer.faults.is_empty() && !peer.armed && peer.setpoints == 0 && peer.completed_uploads == 0);
+        let (task, pad) = (&pilot.task().circles[0], pilot.task().pad);
+        let (mut angle, mut last, mut sum, mut count) = (0.0, None, 0.0, 0.0);
+        for (_, [north, east, _]) in &peer.path {
+            let [x, y] = [east + 2.5 + pad[0] - task.centre[0], north - 1.5 + pad[1] - task.centre[1]];
+            if (x.hypot(y) - task.radius).abs() < 0.5 {
+                let step =
+                    last.map_or(0.0, |last: f64| (y.atan2(x) - last + 1.5 * TAU).rem_euclid(TAU) - 0.5 * TAU);
+                angle += step;
+                sum += x.hypot(y);
+                count += 1.0;
+            }
+            last = Some(y.atan2(x));
+        }
+        let turned = angle * f64::from(ground_station::words::sign(task.direction));
+        assert!(
+            turned > TAU && (sum / count - task.radius).abs() < 0.15,
+            "{turned} {}\n{}",
+            sum / count,
+            air.told()
+        );
+    }
+}
+
+#[test]
+fn a_px4_that_refuses_an_orbit_returns() {
+    let mut air = Air::new(Firmware::Px4, Way::LiveOrbit, settings(), FAIR, 9);
+    air.peers[0].trouble.denies_orbits = true;
+    air.run(400.0);
+    assert!(air.told().contains("DO_ORBIT is refused: MAV_RESULT_DENIED: commands RTL"), "{}", air.told());
+    assert!(air.peers[0].modes_seen.contains(&(4 << 16 | 5 << 24)) && !air.peers[0].armed);
+    // The others have not taken off, and stay where they are.
+    assert!(air.session.failures().len() == 3 && air.peers[1].path.is_empty(), "{}", air.told());
 }
 
 #[test]

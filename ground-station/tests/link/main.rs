@@ -3,6 +3,7 @@
 
 mod air;
 mod arrivals;
+mod damage;
 mod flights;
 mod follower;
 mod packets;

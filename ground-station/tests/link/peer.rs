@@ -27,6 +27,8 @@ pub struct Trouble {
     pub early_ack_at_item: Option<u16>,
     /// Denies to arm.
     pub denies_arming: bool,
+    /// Denies to circle.
+    pub denies_orbits: bool,
     /// Says nothing from this time on, until that one (s).
     pub mute: Option<(f64, f64)>,
     /// Battery falls to 10 % at this time (s).
@@ -61,6 +63,8 @@ pub struct Peer {
     setpoint: Option<(f64, Setpoint)>,
     hold: Setpoint,
     climb_to: Option<f64>,
+    /// North, east and down of the centre, radius (positive: clockwise), speed.
+    orbit: ([f64; 3], f64, f64),
     rebooted_until: f64,
     sequence: u8,
     outbox: Vec<Vec<u8>>,
@@ -74,6 +78,8 @@ const RTL: u32 = 6;
 const LAND: u32 = 9;
 const OFFBOARD: u32 = 6 << 16;
 const PX4_MISSION: u32 = 4 << 16 | 4 << 24;
+const PX4_TAKEOFF: u32 = 4 << 16 | 2 << 24;
+const PX4_ORBIT: u32 = 3 << 16 | 1 << 24;
 const PX4_HOLD: u32 = 4 << 16 | 3 << 24;
 const PX4_RTL: u32 = 4 << 16 | 5 << 24;
 const PX4_LAND: u32 = 4 << 16 | 6 << 24;
@@ -104,6 +110,7 @@ impl Peer {
             setpoint: None,
             hold: Setpoint { position: start, ..Setpoint::default() },
             climb_to: None,
+            orbit: ([0.0; 3], 1.0, 0.0),
             rebooted_until: 0.0,
             sequence: 0,
             outbox: Vec::new(),
@@ -196,6 +203,15 @@ impl Peer {
                     }
                 }
             }
+            PX4_TAKEOFF => {
+                wanted.position[2] = ground - self.climb_to.unwrap_or(0.0);
+                if self.follower.position[2] < wanted.position[2] + 0.1 {
+                    self.climb_to = None;
+                    self.set_mode(PX4_HOLD);
+                    self.hold = wanted;
+                }
+            }
+            PX4_ORBIT => wanted = self.on_orbit(),
             AUTO | PX4_MISSION | RTL | PX4_RTL | LAND | PX4_LAND => {
                 wanted.position[2] = ground + 1.0;
                 if self.follower.position[2] >= ground - 0.05 {
@@ -251,6 +267,7 @@ impl Peer {
             47 => {}
             51 => self.send_item(u16_at(&payload, 0)),
             73 => self.take_item(&payload),
+            75 => self.command_at_a_place(&payload),
             76 => self.command(&payload),
             84 => self.take_setpoint(&payload),
             _ => {}
@@ -340,6 +357,11 @@ impl Peer {
                 0
             }
             22 if !self.armed => 4,
+            22 if self.firmware == Firmware::Px4 => {
+                self.set_mode(PX4_TAKEOFF);
+                self.climb_to = Some(parameter(6) - 290.0);
+                0
+            }
             22 => {
                 self.climb_to = Some(parameter(6));
                 0
@@ -358,6 +380,44 @@ impl Peer {
             _ => 3,
         };
         self.send(77, Fields::default().u16s(&[command]).u8s(&[result]));
+    }
+
+    /// A command with a place, heights above the sea; only PX4 knows these.
+    fn command_at_a_place(&mut self, payload: &[u8]) {
+        let (command, frame) = (u16_at(payload, 28), payload[32]);
+        let degrees = [16, 20].map(|place| f64::from(i32_at(payload, place)) / 1e7);
+        let [north, east] = [0, 1].map(|axis| (degrees[axis] - self.origin[axis]) * self.scale[axis]);
+        let place = [north, east, self.ground() - (f32_at(payload, 24) - 290.0)];
+        let result = match command {
+            _ if self.firmware != Firmware::Px4 || frame != 0 => 3,
+            192 if self.armed => {
+                self.set_mode(PX4_HOLD);
+                self.hold = Setpoint { position: place, ..Setpoint::default() };
+                0
+            }
+            34 if self.armed && !self.trouble.denies_orbits && f32_at(payload, 0).abs() >= 1.0 => {
+                self.set_mode(PX4_ORBIT);
+                self.orbit = (place, f32_at(payload, 0), f32_at(payload, 4));
+                0
+            }
+            34 | 192 => 2,
+            _ => 3,
+        };
+        self.send(77, Fields::default().u16s(&[command]).u8s(&[result]));
+    }
+
+    /// A moment a little ahead on the circle.
+    fn on_orbit(&self) -> Setpoint {
+        let (centre, radius, speed) = self.orbit;
+        let [north, east] = [0, 1].map(|axis| self.follower.position[axis] - centre[axis]);
+        let rate = speed.min((2.0 * radius.abs()).sqrt()) / radius;
+        let (sin, cos) = (east.atan2(north) + 0.1 * rate).sin_cos();
+        let r = radius.abs();
+        Setpoint {
+            position: [centre[0] + r * cos, centre[1] + r * sin, centre[2]],
+            velocity: [-r * rate * sin, r * rate * cos, 0.0],
+            acceleration: [-r * rate * rate * cos, -r * rate * rate * sin, 0.0],
+        }
     }
 
     fn change_mode(&mut self, main: u32, sub: u32) -> u8 {
@@ -386,6 +446,10 @@ impl Peer {
             2048 => {}
             2552 => (setpoint.velocity, setpoint.acceleration) = ([0.0; 3], [0.0; 3]),
             other => self.faults.push(format!("type mask {other}")),
+        }
+        let Setpoint { position, velocity, acceleration } = setpoint;
+        if [position, velocity, acceleration].iter().flatten().any(|value| !value.is_finite()) {
+            self.faults.push(format!("a setpoint that is none: {setpoint:?}"));
         }
         if payload[52] != 1 {
             self.faults.push(format!("frame {}", payload[52]));

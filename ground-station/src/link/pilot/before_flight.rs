@@ -1,6 +1,7 @@
 //! On the ground: checks, the mission up and back, the commands that lead into the air.
 
 use super::{Command, Effect, Outcome, Phase, Pilot};
+use crate::execution::Way;
 use crate::input::Autopilot;
 use crate::link::command::{Answer, Order};
 use crate::link::item::{MissionItem, difference};
@@ -34,6 +35,7 @@ impl Pilot {
         };
         if problems.is_empty() {
             self.frame = self.state.local_frame(&self.origin);
+            self.ground = self.state.altitude;
             self.say(format!("checks pass{}", self.notes()));
             let next = match self.settings.reach {
                 Reach::Check => Phase::Over(Outcome::Done),
@@ -180,7 +182,21 @@ impl Pilot {
             parameters: [0.0; 7],
             effect: Effect::Mode(Mode::Mission.number(autopilot)),
         };
+        // PX4 counts heights from the sea, and takes what is not a number for "here".
+        let up = Command {
+            parameters: [
+                -1.0,
+                0.0,
+                0.0,
+                f32::NAN,
+                f32::NAN,
+                f32::NAN,
+                (self.ground.unwrap_or(0.0) + self.task.pad[2]) as f32,
+            ],
+            ..take_off.clone()
+        };
         match (autopilot, self.flight_mode()) {
+            (Autopilot::Px4, _) if self.task.way == Way::LiveOrbit => vec![mode(Mode::Hold), arm, up].into(),
             (Autopilot::ArduPilot, Mode::Mission) => vec![mode(Mode::Setpoints), arm, start].into(),
             (Autopilot::ArduPilot, _) => vec![mode(Mode::Setpoints), arm, take_off].into(),
             // In OFFBOARD it climbs to the setpoint that is being streamed.

@@ -1,6 +1,7 @@
 //! In the air: to the start, along the plan, down again, and what can go wrong.
 
-use super::{NEAR, Outcome, PATIENCE, Phase, Pilot, SLOW};
+use super::{NEAR, Orbits, Outcome, PATIENCE, Phase, Pilot, SLOW};
+use crate::execution::Way;
 use crate::link::command::{Answer, Order};
 use crate::link::modes::Mode;
 use crate::link::settings::SafeAction;
@@ -19,6 +20,15 @@ impl Pilot {
         let away = (east - wanted[0]).hypot(north - wanted[1]).hypot(up - wanted[2]);
         match self.phase {
             // Height above the pad counts from its own ground.
+            Phase::Climbing if self.task.way == Way::LiveOrbit => {
+                let is_up = up > self.task.pad[2] - NEAR && self.is_in(Mode::Hold);
+                if is_up && self.state.speed < STILL {
+                    let orbits = Orbits::new(&self.task.circles, self.task.pad, now);
+                    self.go(Phase::Orbiting(Box::new(orbits)), now);
+                } else if now - self.since > PATIENCE {
+                    self.make_safe(SafeAction::Land, "does not climb to its height", now);
+                }
+            }
             Phase::Climbing if up > self.task.pad[2] - NEAR / 2.0 && self.state.speed < STILL => {
                 self.go(Phase::Placing, now)
             }

@@ -2,6 +2,9 @@
 
 mod before_flight;
 mod in_flight;
+mod orbits;
+
+pub use orbits::Orbits;
 
 use super::command::Order;
 use super::item::MissionItem;
@@ -11,6 +14,7 @@ use super::settings::{SafeAction, Settings};
 use super::track::{LocalFrame, Moment, Track};
 use super::vehicle::VehicleState;
 use crate::execution::Way;
+use crate::export::qgc::CircleTask;
 use crate::geodesy::Origin;
 use crate::input::Autopilot;
 use mavlink::dialects::common::{MavCmd, MavMessage};
@@ -33,6 +37,8 @@ pub struct Task {
     pub track: Track,
     /// What to upload; empty when streaming.
     pub items: Vec<MissionItem>,
+    /// What to circle by live commands; empty otherwise.
+    pub circles: Vec<CircleTask>,
 }
 
 /// What a vehicle is about.
@@ -56,6 +62,8 @@ pub enum Phase {
     Waiting,
     /// Flies its plan.
     Flying,
+    /// Circles its targets by live commands.
+    Orbiting(Box<Orbits>),
     /// On its way down.
     Landing(Box<Order>),
     /// Holds, returns or lands, since something went wrong.
@@ -101,6 +109,8 @@ pub struct Pilot {
     /// When the phase began (s).
     since: f64,
     frame: Option<LocalFrame>,
+    /// Height of its pad above mean sea level (m), by its own estimate.
+    ground: Option<f64>,
     next_setpoint: f64,
     next_request: f64,
     /// Since when it is in a mode that nobody commanded (s).
@@ -130,6 +140,7 @@ impl Pilot {
             phase: Phase::Checking,
             since: now,
             frame: None,
+            ground: None,
             next_setpoint: now,
             next_request: now,
             stray_since: None,
@@ -159,8 +170,8 @@ impl Pilot {
     /// Whether it is, or may be, in the air.
     #[must_use]
     pub fn is_airborne(&self) -> bool {
-        use Phase::{Climbing, Flying, Landing, Placing, Safe, Waiting};
-        matches!(self.phase, Climbing | Placing | Waiting | Flying | Landing(_) | Safe(..))
+        use Phase::{Climbing, Flying, Landing, Orbiting, Placing, Safe, Waiting};
+        matches!(self.phase, Climbing | Placing | Waiting | Flying | Orbiting(_) | Landing(_) | Safe(..))
     }
 
     /// What is to be told, since it was last asked.
@@ -211,6 +222,7 @@ impl Pilot {
             Phase::Preparing(_, Some(order)) | Phase::Landing(order) | Phase::Safe(_, order) => {
                 order.receive(message, now);
             }
+            Phase::Orbiting(orbits) => orbits.receive(message, now),
             _ => {}
         }
     }
@@ -234,8 +246,9 @@ impl Pilot {
             Preparing(..) | Climbing | Placing | Waiting | Flying if is_streamed => {}
             Uploading(_) | ReadingBack(_) | Ready if !is_streamed => {
                 self.say("gets another mission");
-                let upload = Upload::new(self.target(), task.items.clone(), now);
-                self.go(Uploading(Box::new(upload)), now);
+                let upload = || Uploading(Box::new(Upload::new(self.target(), task.items.clone(), now)));
+                let next = if task.items.is_empty() { Ready } else { upload() };
+                self.go(next, now);
             }
             _ => return false,
         }
@@ -285,7 +298,13 @@ impl Pilot {
 
     /// The mode in which the plan is flown.
     fn flight_mode(&self) -> Mode {
-        if self.task.way == Way::Stream { Mode::Setpoints } else { Mode::Mission }
+        match (self.task.way, &self.phase) {
+            (Way::Stream, _) => Mode::Setpoints,
+            (Way::LiveOrbit, Phase::Orbiting(_)) if self.is_in(Mode::Orbit) => Mode::Orbit,
+            (Way::LiveOrbit, Phase::Climbing) if self.is_in(Mode::TakeOff) => Mode::TakeOff,
+            (Way::LiveOrbit, _) => Mode::Hold,
+            (Way::LoiterItems | Way::Polygon, _) => Mode::Mission,
+        }
     }
 
     /// What to send at `now`; `start` is when the fleet's plan starts (s), once that is settled.
@@ -301,6 +320,7 @@ impl Pilot {
             Phase::Preparing(commands, order) => self.prepare(commands, order, &mut outgoing, now),
             Phase::Climbing | Phase::Placing | Phase::Waiting => self.gather(start, now),
             Phase::Flying => self.fly(start, now),
+            Phase::Orbiting(orbits) => self.orbit(*orbits, &mut outgoing, now),
             Phase::Landing(order) => self.land(*order, &mut outgoing, now),
             Phase::Safe(action, order) => self.stay_safe(action, *order, &mut outgoing, now),
             Phase::Ready | Phase::Over(_) => {}
