@@ -4,12 +4,10 @@
 //!
 //! With `--segments` the mesh is uniform and not refined.
 
-#[path = "../tests/known_problems/harness.rs"]
-#[allow(dead_code)]
-mod harness;
-#[path = "../tests/known_problems/problems.rs"]
-mod problems;
+#[path = "../tests/known_problems/catalogue.rs"]
+mod catalogue;
 
+use catalogue::definition::Mode;
 use std::time::Instant;
 use traj_opt::Transcription;
 
@@ -28,7 +26,6 @@ fn main() {
         Some("radau") => Transcription::LegendreGaussRadau { degree: 3 },
         _ => Transcription::HermiteSimpson,
     };
-    let tolerance = if transcription.order() > 2 { 1e-7 } else { 1e-5 };
     let mut objects = vec![];
     if !json {
         println!(
@@ -36,11 +33,12 @@ fn main() {
             "problem", "value", "reference", "error", "segments", "iter", "ms", "mesh"
         );
     }
-    for e in problems::all().iter().filter(|e| name.as_ref().is_none_or(|n| n == e.name)) {
+    for e in catalogue::all().iter().filter(|e| name.as_ref().is_none_or(|n| n == e.name)) {
         let begin = Instant::now();
-        let row = (e.run)(transcription, fixed.unwrap_or(e.segments), fixed.is_none().then_some(tolerance));
+        let mode = fixed.map_or_else(|| e.mode(transcription), Mode::Fixed);
+        let row = e.run(transcription, &mode);
         let ms = begin.elapsed().as_secs_f64() * 1e3;
-        let error = (row.value - e.reference).abs() / e.reference.abs();
+        let error = e.relative_error(&row);
         if json {
             objects.push(format!(
                 "{{\"name\":\"{}\",\"value\":{},\"reference\":{},\"relative_error\":{:e},\"segments\":{},\"iterations\":{},\"milliseconds\":{ms:.3}}}",

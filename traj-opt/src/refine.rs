@@ -24,6 +24,10 @@ pub struct RefineOptions {
     /// segment, however short that is: bounds on controls count with their excess times the segment's share of the flight, which
     /// is what the state can gain from it.
     pub violation_tolerance: f64,
+    /// Relative change of the cost between two meshes, the second with every segment halved, that is taken as converged; infinite,
+    /// the default, to refine for the trajectory alone. Errors of the trajectory say nothing of controls that the transcription
+    /// cannot follow: multiple shooting flies its constant controls exactly, yet its cost converges with order 2 only.
+    pub cost_tolerance: f64,
     /// Limit of solves after the first. Default 8.
     pub max_rounds: usize,
     /// Limit of segments. Default 2000.
@@ -32,7 +36,13 @@ pub struct RefineOptions {
 
 impl Default for RefineOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-6, violation_tolerance: 1e-5, max_rounds: 8, max_segments: 2000 }
+        Self {
+            tolerance: 1e-6,
+            violation_tolerance: 1e-5,
+            cost_tolerance: f64::INFINITY,
+            max_rounds: 8,
+            max_segments: 2000,
+        }
     }
 }
 
@@ -51,6 +61,13 @@ impl RefineOptions {
         self
     }
 
+    /// Sets [`cost_tolerance`](Self::cost_tolerance).
+    #[must_use]
+    pub fn with_cost_tolerance(mut self, tolerance: f64) -> Self {
+        self.cost_tolerance = tolerance;
+        self
+    }
+
     /// Sets [`max_rounds`](Self::max_rounds).
     #[must_use]
     pub fn with_max_rounds(mut self, n: usize) -> Self {
@@ -66,6 +83,21 @@ impl RefineOptions {
     }
 }
 
+impl RefineOptions {
+    fn validate(&self) -> Result<(), Error> {
+        for (option, value) in [
+            ("tolerance", self.tolerance),
+            ("violation_tolerance", self.violation_tolerance),
+            ("cost_tolerance", self.cost_tolerance),
+        ] {
+            if value.is_nan() || value <= 0.0 {
+                return Err(Error::InvalidOption { option, value });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// A refined solution.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -76,7 +108,9 @@ pub struct Refined<const NX: usize, const NU: usize> {
     pub error: f64,
     /// Greatest violation between the knots, as in [`RefineOptions::violation_tolerance`].
     pub violation: f64,
-    /// True if error and violation are below their tolerances.
+    /// Relative change of the cost from the mesh of twice as long segments; `None` if the last round did not halve them all.
+    pub cost_change: Option<f64>,
+    /// True if error, violation and, if asked for, the change of the cost are below their tolerances.
     pub converged: bool,
     /// Solves after the first.
     pub rounds: usize,
@@ -147,13 +181,7 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     options: &Options,
     refine: &RefineOptions,
 ) -> Result<Refined<NX, NU>, Error> {
-    for (option, value) in
-        [("tolerance", refine.tolerance), ("violation_tolerance", refine.violation_tolerance)]
-    {
-        if value.is_nan() || value <= 0.0 {
-            return Err(Error::InvalidOption { option, value });
-        }
-    }
+    refine.validate()?;
     let proceed = |_: &Iteration| ControlFlow::Continue(());
     let mut workspace = Workspace::new();
     let mut iterations = 0;
@@ -169,12 +197,18 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         }
         solution = attempt(&halved(solution.mesh()), guess)?;
     }
-    let mut rounds = 0;
+    let (mut rounds, mut cost_change) = (0, None);
     loop {
         let judged = judge(&solution, problem, refine)?;
-        let mesh = refined_mesh(solution.mesh(), &judged.errors, refine.tolerance, transcription.order());
+        let settled = cost_change.unwrap_or(f64::INFINITY) <= refine.cost_tolerance;
+        let mesh = if judged.converged {
+            halved(solution.mesh())
+        } else {
+            refined_mesh(solution.mesh(), &judged.errors, refine.tolerance, transcription.order())
+        };
         let spent = rounds >= refine.max_rounds || mesh.n_segments() > refine.max_segments;
-        if !judged.converged && !spent && solution.status.is_success() {
+        let done = spent || (judged.converged && settled);
+        if !done && solution.status.is_success() {
             let mut next = attempt(&mesh, &Guess::from_solution(&solution, 4))?;
             if !next.status.is_success() {
                 // on from where it got, with a new barrier, or all over again
@@ -184,12 +218,16 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
                 next = attempt(&mesh, guess)?;
             }
             if next.status.is_success() {
+                let size = next.objective.abs().max(f64::MIN_POSITIVE);
+                let change = (next.objective - solution.objective).abs() / size;
+                cost_change = judged.converged.then_some(change);
                 (solution, rounds) = (next, rounds + 1);
                 continue;
             }
         }
-        let Judged { error, violation, converged, .. } = judged;
-        return Ok(Refined { solution, error, violation, converged, rounds, iterations });
+        let Judged { error, violation, .. } = judged;
+        let converged = judged.converged && settled;
+        return Ok(Refined { solution, error, violation, cost_change, converged, rounds, iterations });
     }
 }
 

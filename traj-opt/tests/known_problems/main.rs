@@ -1,20 +1,106 @@
-//! Classic problems against their known values.
+//! Classic problems against their known values, with every transcription.
 
-#[allow(dead_code)]
-mod harness;
-mod problems;
+#[path = "catalogue.rs"]
+mod catalogue;
 
+use catalogue::definition::{Known, Mode};
 use traj_opt::Transcription;
 
-#[test]
-fn known_problems_are_reproduced_after_refinement() {
+const TRANSCRIPTIONS: [Transcription; 5] = [
+    Transcription::HermiteSimpson,
+    Transcription::CompressedHermiteSimpson,
+    Transcription::LegendreGaussRadau { degree: 3 },
+    Transcription::Trapezoidal,
+    Transcription::RungeKutta { substeps: 2 },
+];
+
+/// Runs of seconds, which only the ignored test makes: `cargo test --release -- --ignored`.
+fn is_slow(name: &str, transcription: Transcription) -> bool {
+    let low = matches!(transcription, Transcription::Trapezoidal | Transcription::RungeKutta { .. });
+    match name {
+        "alp_rider" => transcription != Transcription::HermiteSimpson,
+        "hang_glider" | "hang_glider_betts" | "cartpole_optimtraj_time" | "free_flying_robot" => {
+            low || transcription == Transcription::CompressedHermiteSimpson
+        }
+        _ => false,
+    }
+}
+
+fn reproduces(known: &Known, slow: bool) {
     let mut failures = vec![];
-    for e in problems::all() {
-        let row = (e.run)(Transcription::HermiteSimpson, e.segments, Some(1e-7));
-        let error = (row.value - e.reference).abs() / e.reference.abs();
-        if !(error <= e.tolerance && row.status.is_success()) {
-            failures.push(format!("{}: {} for {}, {}", e.name, row.value, e.reference, row.status));
+    for transcription in TRANSCRIPTIONS {
+        if is_slow(known.name, transcription) != slow {
+            continue;
+        }
+        let row = known.run(transcription, &known.mode(transcription));
+        let tolerance = known.tolerance_of(transcription);
+        if tolerance == f64::INFINITY {
+            continue;
+        }
+        let error = known.relative_error(&row);
+        if !(error <= tolerance && row.status.is_success()) {
+            failures.push(format!("{transcription:?}: {} (error {error:.1e}), {}", row.value, row.status));
         }
     }
-    assert!(failures.is_empty(), "{failures:#?}");
+    assert!(failures.is_empty(), "{} is {}: {failures:#?}", known.name, known.reference);
+}
+
+macro_rules! reproduced {
+    ($($name:ident),*) => {$(
+        #[test]
+        fn $name() {
+            reproduces(&catalogue::$name::known(), false);
+        }
+    )*};
+}
+
+reproduced!(
+    double_integrator,
+    triple_integrator,
+    s_curve,
+    block_move,
+    brachistochrone,
+    bryson_denham,
+    planar_two_axis,
+    moon_landing,
+    dubins_lsl,
+    linear_tangent,
+    vanderpol,
+    cartpole_kelly,
+    cartpole_optimtraj_force,
+    cartpole_optimtraj_time,
+    goddard_cops,
+    catmix,
+    hang_glider,
+    hang_glider_betts,
+    free_flying_robot,
+    robot_arm,
+    alp_rider,
+    quad2d_x3,
+    quad2d_x6,
+    quad2d_x12,
+    quad2d_z3
+);
+
+#[test]
+#[ignore = "a minute of computation"]
+fn the_slow_ones_too() {
+    for known in catalogue::all() {
+        reproduces(&known, true);
+    }
+}
+
+#[test]
+fn the_list_is_complete() {
+    assert_eq!(catalogue::all().len(), 25);
+}
+
+#[test]
+fn the_false_optimum_of_the_coarse_hang_glider_is_caught() {
+    let known = catalogue::hang_glider::known();
+    let coarse = known.run(Transcription::HermiteSimpson, &Mode::Fixed(50));
+    assert!(coarse.status.is_success() && coarse.value > 1400.0, "{}", coarse.value);
+    let mode = known.mode(Transcription::HermiteSimpson);
+    let refined = known.run(Transcription::HermiteSimpson, &mode);
+    assert!(known.relative_error(&refined) < known.tolerance && refined.error < 1e-7);
 }
