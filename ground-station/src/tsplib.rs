@@ -1,5 +1,6 @@
 //! TSPLIB files (Reinelt 1991) and tables of points, for the solvers alone.
 
+use crate::geodesy::Origin;
 use crate::problem::{Problem, abridged};
 use planner::christofides::{Geometry, Metric};
 
@@ -35,7 +36,8 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// Reads a TSPLIB file, recognised by its sections, or lines that end in two coordinates, separated by commas or spaces.
+    /// Reads a TSPLIB file, recognised by its sections, a table of targets with columns `lat`
+    /// and `lon` or `east` and `north`, or lines that end in two coordinates, separated by commas or spaces.
     ///
     /// # Errors
     ///
@@ -45,7 +47,10 @@ impl Instance {
             |message: String| Problem { file: file.to_owned(), line: None, key: String::new(), message };
         let is_tsplib =
             ["NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION"].iter().any(|section| text.contains(section));
-        let mut instance = if is_tsplib { read_tsplib(text).map_err(wrong)? } else { read_points(text) };
+        let mut instance = match is_tsplib {
+            true => read_tsplib(text).map_err(wrong)?,
+            false => points_of(read_columns(text).unwrap_or_else(|| read_points(text))),
+        };
         instance.is_rounded = is_rounded && is_tsplib;
         if instance.n == 0 {
             return Err(wrong("holds no points: give a TSPLIB file, or lines that end in x,y".to_owned()));
@@ -58,14 +63,39 @@ impl Instance {
     }
 }
 
-fn read_points(text: &str) -> Instance {
+/// The columns of a table of targets, in metres: east and north, or latitude and longitude on a plane through the first place.
+fn read_columns(text: &str) -> Option<Vec<[f64; 2]>> {
+    let mut table =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
+    let header = table.headers().ok()?.clone();
+    let places = |names: [&str; 2]| {
+        let [a, b] = names.map(|name| header.iter().position(|word| word.eq_ignore_ascii_case(name)));
+        a.zip(b)
+    };
+    let plane = places(["east", "north"]);
+    let (a, b) = plane.or(places(["lat", "lon"])).or(places(["latitude", "longitude"]))?;
+    let number = |record: &csv::StringRecord, column: usize| record.get(column)?.parse::<f64>().ok();
+    let pair = |record: &csv::StringRecord| Some([number(record, a)?, number(record, b)?]);
+    let points: Vec<[f64; 2]> = table.records().flatten().filter_map(|record| pair(&record)).collect();
+    let [latitude, longitude] = *points.first()?;
+    let origin = Origin { latitude, longitude, altitude: 0.0 };
+    Some(match plane {
+        Some(_) => points,
+        None => points.iter().map(|&[latitude, longitude]| origin.local(latitude, longitude)).collect(),
+    })
+}
+
+fn points_of(points: Vec<[f64; 2]>) -> Instance {
+    Instance { kind: Kind::Euclidean, n: points.len(), points, matrix: Vec::new(), is_rounded: false }
+}
+
+fn read_points(text: &str) -> Vec<[f64; 2]> {
     let numbers = |line: &str| -> Option<Vec<f64>> {
         let words = line.split([',', ' ', '\t', '\r']).filter(|word| !word.is_empty());
         words.map(|word| word.parse().ok()).collect()
     };
     let rows = text.lines().filter_map(numbers).filter(|row| row.len() >= 2);
-    let points: Vec<[f64; 2]> = rows.map(|row| [row[row.len() - 2], row[row.len() - 1]]).collect();
-    Instance { kind: Kind::Euclidean, n: points.len(), points, matrix: Vec::new(), is_rounded: false }
+    rows.map(|row| [row[row.len() - 2], row[row.len() - 1]]).collect()
 }
 
 fn read_tsplib(text: &str) -> Result<Instance, String> {
@@ -213,6 +243,12 @@ mod tests {
         assert_eq!((matrix.distance(1, 0), matrix.distance(0, 2), matrix.distance(2, 1)), (7.0, 8.0, 9.0));
         let table = Instance::read("t.csv", "x,y\n1,0,0\n2,3,4\n", true)?;
         assert_eq!((table.len(), table.distance(0, 1)), (2, 5.0));
+        let places = "id,name,lat,lon,radius\n1,oak,42.0308,-93.6319,\n2,fir,42.0317,-93.6319,4\n";
+        let places = Instance::read("targets.csv", places, false)?;
+        assert!(
+            places.len() == 2 && (places.distance(0, 1) - 100.0).abs() < 0.1,
+            "a nine thousandth of a degree is 100 m"
+        );
         Ok(())
     }
 

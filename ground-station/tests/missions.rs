@@ -183,3 +183,17 @@ fn batteries_are_swapped_and_pictures_are_looked_for() -> Result<(), Box<dyn Err
     assert!(map.contains("vehicle 1 flight 2: "));
     Ok(())
 }
+
+/// Circles overlap their end for an autopilot, unless the file says how far they go.
+#[test]
+fn circles_overlap_for_an_autopilot() {
+    let mission = "[depot]\nposition = [0, 0]\n[fleet]\nvehicles = 1\n[[target]]\nposition = [20, 5]\n";
+    let sweep = |text: &str| {
+        let file = ground_station::input::parse("m.toml", text, Path::new(""))
+            .map_err(|problems| format!("{problems:?}"));
+        file.map(|file| file.mission.loiter.sweep.to_degrees().round())
+    };
+    assert_eq!(sweep(mission), Ok(360.0));
+    assert_eq!(sweep(&format!("autopilot = \"px4\"\n{mission}")), Ok(380.0));
+    assert_eq!(sweep(&format!("autopilot = \"px4\"\n{mission}[loiter]\nsweep = 400.0\n")), Ok(400.0));
+}

@@ -81,9 +81,15 @@ pub fn environment(root: &Section<'_, '_>) -> Environment {
     environment
 }
 
+/// What circles overlap their end by where an autopilot is named (degrees): it is late, and sees less than it flies.
+const OVERLAP: f64 = 20.0;
+
 /// `[loiter]`; angles in degrees.
 pub fn loiter(root: &Section<'_, '_>) -> LoiterSettings {
-    let default = LoiterSettings::default();
+    let mut default = LoiterSettings::default();
+    if root.has("autopilot") {
+        default.sweep += OVERLAP.to_radians();
+    }
     let section = root.section("loiter");
     let settings = LoiterSettings {
         radius: section.number("radius", Range::POSITIVE).unwrap_or(default.radius),

@@ -50,7 +50,9 @@ pub struct TargetData {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct VehicleData {
-    /// Its number, and which of its flights where it has several.
+    /// Its number.
+    pub number: usize,
+    /// The same, and which of its flights where it has several.
     pub name: String,
     pub colour: &'static str,
     pub pad: [f64; 2],
@@ -168,6 +170,7 @@ fn vehicle(plan: &Plan, index: usize, track: &[Sample]) -> VehicleData {
         Some(CircleData { label: members(circle), east, north, radius: circle.radius })
     };
     VehicleData {
+        number: planned.vehicle + 1,
         name: words::flight(plan, index),
         colour: plot::colour(index),
         pad: [planned.pad[0], planned.pad[1]],

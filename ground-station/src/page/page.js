@@ -64,7 +64,7 @@ function drawMap() {
   for (const vehicle of data.vehicles) {
     vehicle.mark = element(overlay, "g", { class: "vehicle", "data-vehicle": vehicle.name });
     vehicle.arrow = element(vehicle.mark, "path", { d: "M0,-11 L7,8 L0,4 L-7,8 Z", fill: vehicle.colour, stroke: "#fff" });
-    element(vehicle.mark, "text", { x: 9, y: -7, class: "halo" }, vehicle.name);
+    element(vehicle.mark, "text", { x: 9, y: -7, class: "halo" }, vehicle.number);
   }
   element(map, "line", { id: "scale", stroke: "#222", "stroke-width": 2 });
   element(map, "text", { id: "scale-text", class: "halo" });
@@ -166,6 +166,12 @@ function drawChart(chart) {
 // ---- time ----
 let now = 0, playing = false, lastFrame = 0;
 
+// Of the flights of a vehicle the last that has begun, or the first.
+function isCurrent(vehicle) {
+  const flights = data.vehicles.filter((other) => other.number === vehicle.number);
+  return vehicle === (flights.filter((other) => other.start <= now).pop() || flights[0]);
+}
+
 function show(time) {
   now = Math.min(Math.max(time, 0), data.duration);
   byId("time").value = now;
@@ -173,6 +179,7 @@ function show(time) {
   for (const vehicle of data.vehicles) {
     const place = position(vehicle, now), next = position(vehicle, now + 0.2), before = position(vehicle, now - 0.2);
     const [x, y] = onPaper(place);
+    vehicle.mark.setAttribute("display", isCurrent(vehicle) ? "inline" : "none");
     vehicle.mark.setAttribute("transform", `translate(${x.toFixed(2)},${y.toFixed(2)})`);
     vehicle.mark.setAttribute("data-east", place[0].toFixed(3));
     vehicle.mark.setAttribute("data-north", place[1].toFixed(3));

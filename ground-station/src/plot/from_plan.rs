@@ -23,9 +23,10 @@ pub fn map_scene(file: &MissionFile, plan: &Plan, tracks: &[Vec<Sample>]) -> Map
             let (direction, entry) = (words::sign(loiter.entry.direction), loiter.entry.angle);
             Some(MapCircle { centre: circle.centre, radius: circle.radius, direction, entry })
         });
-        let caption = match vehicle.legs.is_empty() {
-            true => format!("vehicle {}: at the depot", words::flight(plan, index)),
-            false => format!(
+        let caption = match (vehicle.lost_at, vehicle.legs.is_empty()) {
+            (Some(time), _) => format!("vehicle {}: lost at {time:.1} s", words::flight(plan, index)),
+            (_, true) => format!("vehicle {}: at the depot", words::flight(plan, index)),
+            (_, false) => format!(
                 "vehicle {}: {:.1} s, {:.0} m",
                 words::flight(plan, index),
                 vehicle.duration(),

@@ -62,6 +62,7 @@ pub struct MapCircle {
 }
 
 const BOTTOM: f64 = 48.0;
+/// Least width of the legend.
 const LEGEND: f64 = 236.0;
 /// Room for the legend's lines.
 const LEAST_HEIGHT: f64 = 430.0;
@@ -74,7 +75,10 @@ const SMALL: TextStyle =
 pub fn map(scene: &MapScene) -> String {
     let view = View::of(scene);
     let height = TOP + view.size[1].max(LEAST_HEIGHT) + BOTTOM;
-    let mut svg = Svg::new(LEFT + view.size[0] + LEGEND, height, &scene.title);
+    // The space beside the map, the symbols and the margin.
+    let caption = |vehicle: &MapVehicle| text_width(&vehicle.caption, SMALL.size) + 72.0;
+    let beside = scene.vehicles.iter().map(caption).fold(LEGEND, f64::max);
+    let mut svg = Svg::new(LEFT + view.size[0] + beside, height, &scene.title);
     let heading = TextStyle { size: 16.0, colour: INK, anchor: Anchor::Start, bold: true, halo: false };
     svg.text([LEFT, 28.0], &scene.title, heading);
     axes(&mut svg, &view);
