@@ -156,7 +156,7 @@ pub use solution::{Multipliers, Solution};
 pub use solve::{Workspace, solve, solve_from, solve_with};
 pub use status::{Iteration, Residuals, Status};
 pub use transcription::Transcription;
-pub use violation::{ConstraintKind, Violation};
+pub use violation::{ConstraintKind, Location, Violation};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,6 +1,6 @@
 //! Problems with a free start time, and problems of several phases, as problems of one phase.
 
-use crate::{Bounds, Dynamics, Guess, Problem};
+use crate::{Bounds, ConstraintKind, Dynamics, Guess, Location, Problem};
 use nalgebra::{RealField, SVector, convert};
 
 /// A problem whose start time is free: an additional, last component of the state holds the start time, its derivative is zero.
@@ -98,6 +98,18 @@ impl<P: Problem<NX, NU>, const NX: usize, const NX1: usize, const NU: usize> Pro
     fn boundary_bounds(&self, index: usize) -> (f64, f64) {
         self.problem.boundary_bounds(index)
     }
+
+    fn n_phases(&self) -> usize {
+        self.problem.n_phases()
+    }
+
+    fn clock<T: RealField + Copy>(&self, time: T, x: &SVector<T, NX1>) -> T {
+        self.problem.clock(time + x[NX], &part(x, 0))
+    }
+
+    fn locate(&self, kind: ConstraintKind, index: usize, time: f64, x: &SVector<f64, NX1>) -> Location {
+        self.problem.locate(kind, index, time + x[NX], &part(x, 0))
+    }
 }
 
 /// What links the end of one phase to the start of the next.
@@ -134,9 +146,10 @@ impl<const N: usize> Linkage<N, N> for Continuous {
 /// Two phases, linked where the first ends and the second begins; a phase may itself be two linked phases.
 ///
 /// Both are stacked on one normalised time from 0 to 1: the state is `(xa, xb, Ta, Tb)` with the durations as components whose
-/// derivative is zero, the control `(ua, ub)`; `NX` must be `NA + NB + 2` and `NU` be `MA + MB` (checked at compile time). Each phase's
-/// own clock starts at its `initial_time` (first) or where the first ends (second); the bounds on final times are read as bounds
-/// on durations from the phase's `initial_time`. Costs are added. The stage structure, and a cost linear in the segments, is kept.
+/// derivative is zero, the control `(ua, ub)`; `NX` must be `NA + NB + 2` and `NU` be `MA + MB` (checked at compile time). There is one
+/// clock: it starts at the `initial_time` of the first phase and the second phase goes on where it stood. Only where the second is
+/// itself linked does that one keep a clock of its own: nest to the left, `(a, b), c`. Bounds on final times are read as bounds on
+/// durations from the phase's `initial_time`. Costs are added. The stage structure, and a cost linear in the segments, is kept.
 #[derive(Clone, Copy, Debug)]
 pub struct Linked<A, B, L, const NA: usize, const NB: usize, const MA: usize, const MB: usize> {
     /// The first phase.
@@ -194,10 +207,16 @@ where
         if index < n { (0, index) } else { (1, index - n) }
     }
 
-    /// Clocks of both phases at the normalised time `s`.
-    fn clocks<T: RealField + Copy>(&self, s: T, durations: [T; 2]) -> [T; 2] {
+    /// Solver times of both phases at the normalised time `s`.
+    fn times<T: RealField + Copy, const NX: usize>(&self, s: T, x: &SVector<T, NX>) -> [T; 2] {
+        let durations = [x[NA + NB], x[NA + NB + 1]];
         let start = convert::<f64, T>(self.first.bounds().initial_time);
-        [start + durations[0] * s, start + durations[0] + durations[1] * s]
+        let second = if self.second.n_phases() > 1 {
+            convert::<f64, T>(self.second.bounds().initial_time)
+        } else {
+            self.first.clock(start + durations[0], &part(x, 0))
+        };
+        [start + durations[0] * s, second + durations[1] * s]
     }
 }
 
@@ -225,9 +244,9 @@ where
     ) -> SVector<T, NX> {
         const { Self::check::<NX, NU>() };
         let durations = [x[NA + NB], x[NA + NB + 1]];
-        let clocks = self.clocks(s, durations);
-        let a = self.first.dynamics().derivative(clocks[0], &part(x, 0), &part(u, 0)) * durations[0];
-        let b = self.second.dynamics().derivative(clocks[1], &part(x, NA), &part(u, MA)) * durations[1];
+        let times = self.times(s, x);
+        let a = self.first.dynamics().derivative(times[0], &part(x, 0), &part(u, 0)) * durations[0];
+        let b = self.second.dynamics().derivative(times[1], &part(x, NA), &part(u, MA)) * durations[1];
         stack(&a, &b, [T::zero(); 2])
     }
 }
@@ -277,16 +296,16 @@ where
     }
 
     fn mayer<T: RealField + Copy>(&self, start: &SVector<T, NX>, end: &SVector<T, NX>, _: T) -> T {
-        let clocks = self.clocks(T::one(), [end[NA + NB], end[NA + NB + 1]]);
-        self.first.mayer(&part(start, 0), &part(end, 0), clocks[0])
-            + self.second.mayer(&part(start, NA), &part(end, NA), clocks[1])
+        let times = self.times(T::one(), end);
+        self.first.mayer(&part(start, 0), &part(end, 0), times[0])
+            + self.second.mayer(&part(start, NA), &part(end, NA), times[1])
     }
 
     fn lagrange<T: RealField + Copy>(&self, s: T, x: &SVector<T, NX>, u: &SVector<T, NU>) -> Option<T> {
         let durations = [x[NA + NB], x[NA + NB + 1]];
-        let clocks = self.clocks(s, durations);
-        let a = self.first.lagrange(clocks[0], &part(x, 0), &part(u, 0)).map(|cost| cost * durations[0]);
-        let b = self.second.lagrange(clocks[1], &part(x, NA), &part(u, MA)).map(|cost| cost * durations[1]);
+        let times = self.times(s, x);
+        let a = self.first.lagrange(times[0], &part(x, 0), &part(u, 0)).map(|cost| cost * durations[0]);
+        let b = self.second.lagrange(times[1], &part(x, NA), &part(u, MA)).map(|cost| cost * durations[1]);
         match (a, b) {
             (Some(a), Some(b)) => Some(a + b),
             (one, other) => one.or(other),
@@ -298,10 +317,10 @@ where
     }
 
     fn path<T: RealField + Copy>(&self, s: T, x: &SVector<T, NX>, u: &SVector<T, NU>, values: &mut [T]) {
-        let clocks = self.clocks(s, [x[NA + NB], x[NA + NB + 1]]);
+        let times = self.times(s, x);
         let (a, b) = values.split_at_mut(self.first.n_path());
-        self.first.path(clocks[0], &part(x, 0), &part(u, 0), a);
-        self.second.path(clocks[1], &part(x, NA), &part(u, MA), b);
+        self.first.path(times[0], &part(x, 0), &part(u, 0), a);
+        self.second.path(times[1], &part(x, NA), &part(u, MA), b);
     }
 
     fn path_bounds(&self, index: usize) -> (f64, f64) {
@@ -322,11 +341,11 @@ where
         _: T,
         values: &mut [T],
     ) {
-        let clocks = self.clocks(T::one(), [end[NA + NB], end[NA + NB + 1]]);
+        let times = self.times(T::one(), end);
         let (a, rest) = values.split_at_mut(self.first.n_boundary());
         let (b, link) = rest.split_at_mut(self.second.n_boundary());
-        self.first.boundary(&part(start, 0), &part(end, 0), clocks[0], a);
-        self.second.boundary(&part(start, NA), &part(end, NA), clocks[1], b);
+        self.first.boundary(&part(start, 0), &part(end, 0), times[0], a);
+        self.second.boundary(&part(start, NA), &part(end, NA), times[1], b);
         self.linkage.residual(&part(end, 0), &part(start, NA), link);
     }
 
@@ -338,6 +357,39 @@ where
             self.second.boundary_bounds(index - a)
         } else {
             (0.0, 0.0)
+        }
+    }
+
+    fn n_phases(&self) -> usize {
+        self.first.n_phases() + self.second.n_phases()
+    }
+
+    fn clock<T: RealField + Copy>(&self, s: T, x: &SVector<T, NX>) -> T {
+        self.second.clock(self.times(s, x)[1], &part(x, NA))
+    }
+
+    fn locate(&self, kind: ConstraintKind, index: usize, s: f64, x: &SVector<f64, NX>) -> Location {
+        let times = self.times(s, x);
+        let (of_a, of_b) = match kind {
+            ConstraintKind::Path => (self.first.n_path(), self.second.n_path()),
+            ConstraintKind::Boundary => (self.first.n_boundary(), self.second.n_boundary()),
+            ConstraintKind::Control => (MA, MB),
+            _ => (NA, NB),
+        };
+        let phase = self.first.n_phases();
+        if index < of_a {
+            self.first.locate(kind, index, times[0], &part(x, 0))
+        } else if index < of_a + of_b {
+            let found = self.second.locate(kind, index - of_a, times[1], &part(x, NA));
+            Location { phase: found.phase + phase, ..found }
+        } else if kind == ConstraintKind::Boundary {
+            let time = self.second.clock(self.times(0.0, x)[1], &part(x, NA));
+            Location { kind: ConstraintKind::Linkage, index: index - of_a - of_b, phase, time }
+        } else {
+            let later = index - of_a - of_b;
+            let duration = x[NA + NB + later.min(1)];
+            let phase = later.min(1) * phase;
+            Location { kind: ConstraintKind::Duration, index: 0, phase, time: duration }
         }
     }
 }

@@ -1,7 +1,6 @@
 //! The optimal control problem: cost, bounds, path constraints, boundary conditions.
 
-use crate::Hessian;
-use crate::{Bounds, Dynamics};
+use crate::{Bounds, ConstraintKind, Dynamics, Hessian, Location};
 use nalgebra::{RealField, SVector};
 
 /// A single-phase optimal control problem in Bolza form:
@@ -113,6 +112,21 @@ pub trait Problem<const NX: usize, const NU: usize> {
     /// True if running cost and path functions do not depend on time; saves derivatives. Default: false (always safe).
     fn is_autonomous(&self) -> bool {
         false
+    }
+
+    /// Number of phases: 1 unless the problem is made of several, as [`Linked`](crate::Linked) is.
+    fn n_phases(&self) -> usize {
+        1
+    }
+
+    /// The clock of the problem when the solver's time is `time`. Default: the same.
+    fn clock<T: RealField + Copy>(&self, time: T, _state: &SVector<T, NX>) -> T {
+        time
+    }
+
+    /// Phase and clock of a constraint, for diagnoses. Default: phase 0, the same time.
+    fn locate(&self, kind: ConstraintKind, index: usize, time: f64, _state: &SVector<f64, NX>) -> Location {
+        Location { kind, index, phase: 0, time }
     }
 
     /// Typical magnitudes of the variables; default: taken from the bounds and the guess.

@@ -22,6 +22,10 @@ pub enum ConstraintKind {
     Boundary,
     /// A fixed component of the end state.
     TerminalState,
+    /// A constraint that links a phase to the one before.
+    Linkage,
+    /// The duration of a phase.
+    Duration,
 }
 
 impl std::fmt::Display for ConstraintKind {
@@ -33,8 +37,24 @@ impl std::fmt::Display for ConstraintKind {
             Self::Dynamics => "equation of motion of state",
             Self::Boundary => "boundary constraint",
             Self::TerminalState => "terminal value of state",
+            Self::Linkage => "linkage constraint",
+            Self::Duration => "duration",
         })
     }
+}
+
+/// What the solver calls a constraint, in the words of the problem that the user wrote: within its phase, on its clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Location {
+    /// What it is.
+    pub kind: ConstraintKind,
+    /// Component of the state or control of the phase, or index of its path, boundary or linkage constraint.
+    pub index: usize,
+    /// Number of the phase, from 0; a linkage belongs to the later one.
+    pub phase: usize,
+    /// Time on the clock of the phase, s.
+    pub time: f64,
 }
 
 /// The greatest violation found along a trajectory.
@@ -44,9 +64,11 @@ impl std::fmt::Display for ConstraintKind {
 pub struct Violation {
     /// What is violated.
     pub kind: ConstraintKind,
-    /// Component of the state or control, or index of the path or boundary constraint.
+    /// Component of the state or control, or index of the path or boundary constraint, within the phase.
     pub index: usize,
-    /// Time, s.
+    /// Number of the phase, from 0; 0 for a problem of a single phase.
+    pub phase: usize,
+    /// Time on the clock of the phase, s.
     pub time: f64,
     /// Distance beyond the bound, in the units of the constraint; infinite where its value is not a number.
     pub amount: f64,
@@ -54,7 +76,15 @@ pub struct Violation {
 
 impl std::fmt::Display for Violation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {} violated by {:.3e} at time {:.6}", self.kind, self.index, self.amount, self.time)
+        let Self { kind, index, phase, time, amount } = self;
+        write!(f, "{kind} {index} of phase {phase} violated by {amount:.3e} at time {time:.6}")
+    }
+}
+
+impl Violation {
+    fn at(location: Location, amount: f64) -> Self {
+        let Location { kind, index, phase, time } = location;
+        Self { kind, index, phase, time, amount }
     }
 }
 
@@ -66,14 +96,14 @@ pub(crate) fn greatest_residual<const NX: usize, const NU: usize, P: Problem<NX,
     let (layout, values) = (&memory.layout, &memory.values);
     let tf = memory.w[layout.time];
     let knots = program.mesh.fractions();
+    // what a location needs of the state, start time and durations, is the same at every knot
+    let start = program.state(layout, &memory.w, 0);
     let mut worst = (0.0, None);
     let mut see = |kind, index, fraction, residual: f64, scale: f64| {
         let amount = if residual.is_nan() { f64::INFINITY } else { residual.abs() };
         if amount / scale > worst.0 {
-            worst = (
-                amount / scale,
-                Some(Violation { kind, index, time: program.time_at(fraction, tf), amount }),
-            );
+            let location = program.problem.locate(kind, index, program.time_at(fraction, tf), &start);
+            worst = (amount / scale, Some(Violation::at(location, amount)));
         }
     };
     for k in 0..layout.n_segments {
@@ -171,7 +201,7 @@ fn worst_at<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let mut see = |kind, index, value: f64, lower: f64, upper: f64| {
         let excess = if value.is_nan() { f64::INFINITY } else { (lower - value).max(value - upper) };
         if excess > worst.map_or(0.0, |w: Violation| w.amount) {
-            *worst = Some(Violation { kind, index, time, amount: excess });
+            *worst = Some(Violation::at(problem.locate(kind, index, time, x), excess));
         }
     };
     for i in 0..NX {

@@ -2,8 +2,8 @@
 
 use nalgebra::{RealField, SVector};
 use traj_opt::{
-    Bounds, Continuous, Dynamics, FreeInitialTime, Guess, Linked, Mesh, Options, Problem, Transcription,
-    check_derivatives, solve,
+    Bounds, ConstraintKind, Continuous, Dynamics, FreeInitialTime, Guess, Linked, Mesh, Options, Problem,
+    Transcription, check_derivatives, solve,
 };
 
 const SCHEMES: [Transcription; 5] = [
@@ -145,7 +145,7 @@ fn three_phases_nest() {
     // two legs of 0.5 m from rest to rest, 2 sqrt(0.5) each, then 0.25 m back
     let pair = Linked::<_, _, _, 2, 2, 1, 1> {
         first: Free(Leg { from: Some([0.0, 0.0]), to: Some([0.5, 0.0]), least: -1.0, limit: 1.0 }),
-        second: Leg { from: Some([0.5, 0.0]), to: Some([1.0, 0.0]), least: -1.0, limit: 1.0 },
+        second: Free(Leg { from: Some([0.5, 0.0]), to: Some([1.0, 0.0]), least: -1.0, limit: 1.0 }),
         linkage: Continuous,
     };
     struct Ends;
@@ -159,33 +159,10 @@ fn three_phases_nest() {
             }
         }
     }
-    struct Back(Leg);
-    impl Dynamics<2, 1> for Back {
-        fn derivative<T: RealField + Copy>(
-            &self,
-            t: T,
-            x: &SVector<T, 2>,
-            u: &SVector<T, 1>,
-        ) -> SVector<T, 2> {
-            self.0.derivative(t, x, u)
-        }
-    }
-    impl Problem<2, 1> for Back {
-        type Dynamics = Self;
-        fn dynamics(&self) -> &Self {
-            self
-        }
-        fn bounds(&self) -> Bounds<2, 1> {
-            self.0.bounds()
-        }
-        fn mayer<T: RealField + Copy>(&self, _: &SVector<T, 2>, _: &SVector<T, 2>, time: T) -> T {
-            // the clock of the nested pair is normalised: its end is at 1
-            time - T::one()
-        }
-    }
     let problem = Linked::<_, _, _, 6, 2, 2, 1> {
         first: pair,
-        second: Back(Leg { from: None, to: Some([0.75, 0.0]), least: -1.0, limit: 1.0 }),
+        // one clock: the end of the third leg is the time of all three
+        second: Leg { from: None, to: Some([0.75, 0.0]), least: -1.0, limit: 1.0 },
         linkage: Ends,
     };
     let leg = |from: f64, to: f64| Guess::line([from, 0.0].into(), [to, 0.0].into(), [0.0].into(), 1.0);
@@ -313,5 +290,73 @@ fn derivatives_of_linked_phases_agree_with_central_differences() {
         let f = |x: SVector<f64, 6>| problem.derivative(0.4, &x, &u);
         let slope = (f(x + step) - f(x - step)) / 2e-6;
         assert!((slope - jacobian.state.column(i)).amax() < 1e-8);
+    }
+}
+
+#[test]
+fn an_infeasible_phase_is_named_with_its_clock() {
+    // the first leg has all the time it wants, the second must move 1 m in 0.5 s with 1 m/s^2
+    let leg = |from, to| Leg { from, to, least: -1.0, limit: 1.0 };
+    let problem = Linked::<_, _, _, 2, 2, 1, 1> {
+        first: leg(Some([0.0, 0.0]), Some([1.0, 0.0])),
+        second: Hurried(leg(None, Some([2.0, 0.0]))),
+        linkage: Continuous,
+    };
+    let guess = problem.guess::<6, 2>(
+        &Guess::line([0.0, 0.0].into(), [1.0, 0.0].into(), [0.0].into(), 2.0),
+        &Guess::line([1.0, 0.0].into(), [2.0, 0.0].into(), [0.0].into(), 0.4),
+    );
+    let mut found = 0;
+    for scheme in SCHEMES {
+        let s = solve(&problem, &Mesh::uniform(20), scheme, &guess, &Options::default()).unwrap();
+        assert_eq!(s.status, traj_opt::Status::Infeasible, "{scheme:?}");
+        let d = s.diagnosis.unwrap();
+        println!("{scheme:?}: {d}");
+        let first = s.states()[0][4];
+        // the clock is that of the phase named, also where a solver spreads the violation into the first
+        let from = if d.phase == 1 { first } else { 0.0 };
+        let to = if d.phase == 1 { first + 0.5 } else { first };
+        assert!(d.amount > 1e-3 && d.index < 2 && d.phase < 2, "{scheme:?}: {d}");
+        assert!(d.time >= from - 1e-6 && d.time <= to + 1e-6, "{scheme:?}: {d}, seam {first}");
+        found += d.phase;
+    }
+    assert!(found > 0, "the second phase is the one that cannot be flown");
+    // every kind is told in the words of its phase, at half of the second
+    let x: SVector<f64, 6> = [0.0, 0.0, 0.0, 0.0, 2.0, 0.5].into();
+    let told = |kind, index| Problem::<6, 2>::locate(&problem, kind, index, 0.5, &x);
+    for (kind, index, phase, own) in [
+        (ConstraintKind::State, 3, 1, 1),
+        (ConstraintKind::State, 1, 0, 1),
+        (ConstraintKind::Control, 1, 1, 0),
+        (ConstraintKind::Dynamics, 2, 1, 0),
+    ] {
+        let location = told(kind, index);
+        assert_eq!((location.kind, location.phase, location.index), (kind, phase, own));
+        assert_eq!(location.time, if phase == 1 { 2.25 } else { 1.0 });
+    }
+    let seam = told(ConstraintKind::Boundary, 1);
+    assert_eq!((seam.kind, seam.phase, seam.index, seam.time), (ConstraintKind::Linkage, 1, 1, 2.0));
+    assert_eq!(told(ConstraintKind::State, 5).kind, ConstraintKind::Duration);
+}
+
+/// A leg with at most half a second.
+#[derive(Clone, Copy)]
+struct Hurried(Leg);
+
+impl Dynamics<2, 1> for Hurried {
+    fn derivative<T: RealField + Copy>(&self, t: T, x: &SVector<T, 2>, u: &SVector<T, 1>) -> SVector<T, 2> {
+        self.0.derivative(t, x, u)
+    }
+}
+
+impl Problem<2, 1> for Hurried {
+    type Dynamics = Self;
+
+    fn dynamics(&self) -> &Self {
+        self
+    }
+
+    fn bounds(&self) -> Bounds<2, 1> {
+        self.0.bounds().with_final_time(0.01, 0.5)
     }
 }
