@@ -19,6 +19,7 @@
 //! | what each way of execution really does | [`execution`] |
 //! | one HTML page that flies the vehicles | [`page`] |
 //! | the live MAVLink link | [`link`] |
+//! | plans that follow events in flight | [`command::LivePlan`], [`events`] |
 //! | the paper's figures and simulations | [`study`] |
 //! | the output folder, written whole or not at all | [`export::folder`] |
 //! | map and profiles as SVG | [`plot`] |

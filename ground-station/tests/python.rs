@@ -8,7 +8,7 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Longer than any of these sessions takes on a busy machine.
@@ -63,12 +63,16 @@ fn free_port() -> std::io::Result<String> {
     Ok(UdpSocket::bind("127.0.0.1:0")?.local_addr()?.port().to_string())
 }
 
-fn export(folder: &Path, autopilot: &str) -> std::io::Result<Output> {
-    Command::new(env!("CARGO_BIN_EXE_ground-station"))
+/// The built-in field for an autopilot, in a folder of its own.
+fn exported(home: &Path, autopilot: &str) -> Result<PathBuf, Box<dyn Error>> {
+    let folder = home.join(autopilot);
+    let run = Command::new(env!("CARGO_BIN_EXE_ground-station"))
         .args(["export", "--quiet", "--autopilot", autopilot, "--format", "plan,waypoints,kml,geojson"])
         .arg("--out")
-        .arg(folder)
-        .output()
+        .arg(&folder)
+        .output()?;
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    Ok(folder)
 }
 
 /// Missions are uploaded to three vehicles and read back.
@@ -99,9 +103,7 @@ fn mavsdk_imports_our_plans() -> Outcome {
     let Some(python) = python() else { return Ok(()) };
     let home = tempfile::tempdir()?;
     for autopilot in ["ardupilot", "px4"] {
-        let folder = home.path().join(autopilot);
-        let run = export(&folder, autopilot)?;
-        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let folder = exported(home.path(), autopilot)?;
         let port = free_port()?;
         let mut vehicles = Command::new(&python);
         vehicles.arg(script("vehicles_pymavlink.py")).arg(&port);
@@ -121,9 +123,7 @@ fn maps_and_missions_are_opened_by_other_libraries() -> Outcome {
     let Some(python) = python() else { return Ok(()) };
     let home = tempfile::tempdir()?;
     for autopilot in ["ardupilot", "px4"] {
-        let folder = home.path().join(autopilot);
-        let run = export(&folder, autopilot)?;
-        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let folder = exported(home.path(), autopilot)?;
         let mut reader = Command::new(&python);
         reader.arg(script("read_maps.py")).arg(&folder);
         let succeeded = Running::start(&mut reader, home.path(), "maps")?.succeeds()?;

@@ -25,7 +25,7 @@ pub struct FlyArguments {
     /// udpin:HOST:PORT, udpout:HOST:PORT or tcpout:HOST:PORT.
     #[arg(long, value_name = "ADDRESS")]
     pub connect: Address,
-    /// How the plan is flown.
+    /// How the plan is flown: stream, loiter-items (ArduPilot), polygon, live-orbit (PX4).
     #[arg(long, value_parser = parse_way, default_value = "stream")]
     pub way: Way,
     /// Only look: nothing is sent that changes a vehicle.

@@ -97,7 +97,7 @@ pub enum StudyCommand {
         /// Entries tried on the second circle.
         #[arg(long, default_value_t = 16)]
         entries: usize,
-        /// Distances between the circles, in loiter radii.
+        /// Distances from the first circle's exit to the second circle, in loiter radii.
         #[arg(long, value_delimiter = ',', value_parser = parse_positive, default_values_t = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0])]
         distances: Vec<f64>,
         #[command(flatten)]

@@ -124,6 +124,10 @@ impl LivePlan {
 
     /// A vehicle that returns or has dropped out leaves its targets to the others.
     fn note_losses(&mut self, pilots: &[Pilot]) {
+        // When the whole fleet returns, nobody is left who could take anything over.
+        let has_others = pilots
+            .iter()
+            .any(|pilot| !matches!(pilot.phase(), Phase::Safe(..) | Phase::Landing(_) | Phase::Over(_)));
         for pilot in pilots {
             let vehicle = pilot.task().number - 1;
             let is_lost = matches!(
@@ -132,7 +136,9 @@ impl LivePlan {
             );
             if is_lost && !self.lost.contains(&vehicle) {
                 self.lost.push(vehicle);
-                self.events.push_front(TimedEvent { time: 0.0, event: Event::VehicleFails(vehicle) });
+                if has_others {
+                    self.push(TimedEvent { time: 0.0, event: Event::VehicleFails(vehicle) });
+                }
             }
         }
     }

@@ -40,7 +40,7 @@ pub fn words_of(study: &str) -> Words<'static> {
         },
         _ => Words {
             title: "transition time, quadcopter over holonomic vehicle (mean, least, greatest)",
-            x: "distance between the circles (loiter radii)",
+            x: "distance to the next circle (loiter radii)",
             y: "ratio",
             shows_range: true,
         },

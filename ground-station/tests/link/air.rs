@@ -207,3 +207,9 @@ impl Air {
         self.events.iter().map(line).collect()
     }
 }
+
+/// The angle (rad, from -pi to pi) by which a bearing has turned since the last one.
+pub fn turned(last: Option<f64>, bearing: f64) -> f64 {
+    use std::f64::consts::TAU;
+    last.map_or(0.0, |last| (bearing - last + 1.5 * TAU).rem_euclid(TAU) - 0.5 * TAU)
+}

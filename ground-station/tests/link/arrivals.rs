@@ -1,6 +1,6 @@
 //! Targets that come, move and vanish and vehicles that are lost while the fleet flies: everyone concerned gets a new flight.
 
-use crate::air::{Air, Radio};
+use crate::air::{Air, Radio, turned};
 use crate::peer::{Firmware, Peer, Trouble};
 use ground_station::execution::Way;
 use ground_station::link::pilot::{Outcome, Phase};
@@ -29,8 +29,7 @@ fn circled(air: &Air, centre: [f64; 2]) -> f64 {
         for (_, [east, north]) in flown(peer, pilot.task().pad) {
             let (x, y) = (east - centre[0], north - centre[1]);
             let is_on_circle = (x.hypot(y) - 2.5).abs() < 0.5;
-            let step =
-                last.map_or(0.0, |last: f64| (y.atan2(x) - last + 1.5 * TAU).rem_euclid(TAU) - 0.5 * TAU);
+            let step = turned(last, y.atan2(x));
             angle += if is_on_circle { step } else { 0.0 };
             last = Some(y.atan2(x));
         }

@@ -1,6 +1,6 @@
 //! Flights: streamed plans, missions, and everything that goes wrong in the air.
 
-use crate::air::{Air, Radio};
+use crate::air::{Air, Radio, turned};
 use crate::peer::{Firmware, Trouble};
 use ground_station::execution::Way;
 use ground_station::link::pilot::{Outcome, Phase};
@@ -96,18 +96,16 @@ fn px4_circles_by_live_commands() {
         for (_, [north, east, _]) in &peer.path {
             let [x, y] = [east + 2.5 + pad[0] - task.centre[0], north - 1.5 + pad[1] - task.centre[1]];
             if (x.hypot(y) - task.radius).abs() < 0.5 {
-                let step =
-                    last.map_or(0.0, |last: f64| (y.atan2(x) - last + 1.5 * TAU).rem_euclid(TAU) - 0.5 * TAU);
-                angle += step;
+                angle += turned(last, y.atan2(x));
                 sum += x.hypot(y);
                 count += 1.0;
             }
             last = Some(y.atan2(x));
         }
-        let turned = angle * f64::from(ground_station::words::sign(task.direction));
+        let around = angle * f64::from(ground_station::words::sign(task.direction));
         assert!(
-            turned > TAU && (sum / count - task.radius).abs() < 0.15,
-            "{turned} {}\n{}",
+            around > TAU && (sum / count - task.radius).abs() < 0.15,
+            "{around} {}\n{}",
             sum / count,
             air.told()
         );

@@ -37,6 +37,9 @@ class Vehicle:
 
     def take(self, message):
         mav, kind = self.link.mav, message.get_type()
+        # A ground station may send everything to everyone.
+        if getattr(message, "target_system", self.system) not in (0, self.system):
+            return
         self.station = (message.get_srcSystem(), message.get_srcComponent())
         if kind == "COMMAND_LONG":
             mav.command_ack_send(message.command, 0)

@@ -1,6 +1,7 @@
 //! One vehicle of a session, from silence to the ground: a machine without sockets or clocks.
 
 mod before_flight;
+mod changes;
 mod in_flight;
 mod orbits;
 
@@ -234,40 +235,6 @@ impl Pilot {
             self.say("prepares for take-off");
             self.go(Phase::Preparing(commands, None), now);
         }
-    }
-
-    /// Takes another task, if it is in time for that: what is streamed changes at once, a mission that has not been begun is uploaded
-    /// again.
-    pub fn renew(&mut self, task: &Task, now: f64) -> bool {
-        use Phase::{Checking, Climbing, Flying, Placing, Preparing, ReadingBack, Ready, Uploading, Waiting};
-        let is_streamed = task.way == Way::Stream;
-        match self.phase {
-            Checking => {}
-            Preparing(..) | Climbing | Placing | Waiting | Flying if is_streamed => {}
-            Uploading(_) | ReadingBack(_) | Ready if !is_streamed => {
-                self.say("gets another mission");
-                let upload = || Uploading(Box::new(Upload::new(self.target(), task.items.clone(), now)));
-                let next = if task.items.is_empty() { Ready } else { upload() };
-                self.go(next, now);
-            }
-            _ => return false,
-        }
-        self.task = task.clone();
-        true
-    }
-
-    /// Ends its part before it has left its pad: there is nothing left to do.
-    pub fn dismiss(&mut self, now: f64) {
-        use Phase::{Checking, Climbing, Flying, Placing, Preparing, ReadingBack, Ready, Uploading, Waiting};
-        let next = match self.phase {
-            Checking | Uploading(_) | ReadingBack(_) | Ready => Phase::Over(Outcome::Done),
-            Preparing(..) | Climbing | Placing | Waiting | Flying if self.task.way == Way::Stream => {
-                Phase::Landing(Box::new(self.mode_order(Mode::Land, now)))
-            }
-            _ => return,
-        };
-        self.say("has nothing left to do");
-        self.go(next, now);
     }
 
     /// Stops what it does in the air and does something safe instead.
