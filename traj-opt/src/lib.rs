@@ -23,6 +23,7 @@
 //! | check it independently | [`Solution::integrate`], [`integrate`], [`segment_errors`], [`check_derivatives`], [`check_path_derivatives`] |
 //! | see what it leaves between the knots, or why it failed | [`Solution::greatest_violation`], [`Solution::diagnosis`] |
 //! | free the start time, link phases | [`FreeInitialTime`], [`Linked`] |
+//! | factorise without regard to stages | [`LinearAlgebra`] (feature `faer`) |
 //! | bound the minimum time from below | `least_time_bound` (feature `clarabel`) |
 //! | refine the mesh | [`solve_refined`], [`refined_mesh`] |
 //!
@@ -39,7 +40,7 @@
 //!    `dx_{k+1} = a dx_k + b du + ap dp + c` with a quadratic cost.
 //! 4. *Riccati recursion* over the segments; p and the multipliers of the end conditions form a border of a few columns. If a
 //!    reduced Hessian is not positive definite, a multiple of the identity (in scaled variables) is added and the recursion
-//!    repeated (inertia correction).
+//!    repeated (inertia correction). [`LinearAlgebra`] chooses a sparse `L D L'` of the same system instead, whose pivots tell the inertia.
 //! 5. *Filter line search* with second-order corrections; restoration by Gauss-Newton steps on the violation alone.
 //!
 //! Static parameters, a free start time and the durations of phases are components of the state whose derivative is zero.
@@ -93,7 +94,8 @@
 //! # How it is tested
 //! Derivatives against automatic ones and central differences, costs against analytic switch times and the Riccati equation on
 //! generated problems, a counting allocator that sees none between iterations, the conditions of optimality written out by hand from what a solution reports, guesses of time over eight
-//! decades, infeasible problems, observed orders of convergence, twenty-five classic problems, fifty
+//! decades, infeasible problems, observed orders of convergence, twenty-five classic problems with every transcription, the recursion
+//! against a sparse factorisation, fifty
 //! minimum-time quadcopter transitions for two models, each flown by the integrator.
 //!
 //! # References
@@ -109,6 +111,7 @@
 //!
 //! # Features
 //! `serde`: (de)serialisation of data types. `rayon`: batches over threads. `clarabel`: lower bounds by conic programming.
+//! `faer`: sparse factorisation of the whole Newton system instead of the recursion over its stages.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
@@ -147,7 +150,7 @@ pub use guess::Guess;
 pub use integrate::{IntegrateOptions, Trajectory, integrate};
 pub use linked::{Continuous, FreeInitialTime, Linkage, Linked};
 pub use mesh::Mesh;
-pub use options::Options;
+pub use options::{LinearAlgebra, Options};
 pub use problem::{Problem, Scales};
 pub use refine::{RefineOptions, Refined, refined_mesh, segment_errors, solve_refined};
 #[cfg(feature = "clarabel")]

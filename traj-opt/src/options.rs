@@ -2,6 +2,21 @@
 
 use crate::Error;
 
+/// How Newton systems are factorised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum LinearAlgebra {
+    /// Riccati recursion over the segments: fastest, cost linear in their number.
+    #[default]
+    Riccati,
+    /// Sparse `L D L'` of the whole system in an order of minimum degree, with inertia read off the pivots and iterative
+    /// refinement: does not rely on the stages, and costs several times as much. For many boundary constraints that couple both
+    /// ends, and as an independent check. Allocates when the shape changes, not between iterations.
+    #[cfg(feature = "faer")]
+    Sparse,
+}
+
 /// Settings of the interior-point solver.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,6 +37,8 @@ pub struct Options {
     /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. If that does not help, guesses
     /// 16 and 256 times as short as the first and as long as the last follow. Default 6; 0 for a single solve.
     pub time_restarts: usize,
+    /// How Newton systems are factorised. Default [`LinearAlgebra::Riccati`].
+    pub linear_algebra: LinearAlgebra,
 }
 
 impl Default for Options {
@@ -33,6 +50,7 @@ impl Default for Options {
             initial_mu: 0.1,
             warm_mu: 3e-6,
             time_restarts: 6,
+            linear_algebra: LinearAlgebra::default(),
         }
     }
 }
@@ -77,6 +95,13 @@ impl Options {
     #[must_use]
     pub fn with_time_restarts(mut self, n: usize) -> Self {
         self.time_restarts = n;
+        self
+    }
+
+    /// Sets [`linear_algebra`](Self::linear_algebra).
+    #[must_use]
+    pub fn with_linear_algebra(mut self, linear_algebra: LinearAlgebra) -> Self {
+        self.linear_algebra = linear_algebra;
         self
     }
 

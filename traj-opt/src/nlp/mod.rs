@@ -22,6 +22,8 @@ pub(crate) mod riccati;
 pub(crate) mod runge_kutta;
 pub(crate) mod running;
 pub(crate) mod setup;
+#[cfg(feature = "faer")]
+pub(crate) mod sparse;
 pub(crate) mod stages;
 pub(crate) mod tableau;
 pub(crate) mod trapezoidal;

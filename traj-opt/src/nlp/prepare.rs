@@ -54,6 +54,12 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.step.resize(n, m, nb);
         setup::free_start(&program.bounds, &mut self.free_start);
         self.riccati.resize(n, m, nb, &self.free_start, program.free_time);
+        #[cfg(feature = "faer")]
+        if options.linear_algebra == crate::LinearAlgebra::Sparse {
+            self.riccati.sparse.get_or_insert_default();
+        } else {
+            self.riccati.sparse = None;
+        }
         self.scratch.resize(n_path.max(self.rows.n_functions));
         self.log.clear();
         self.log.reserve(options.max_iterations.min(MOST_RESERVED) + 1);

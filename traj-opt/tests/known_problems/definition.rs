@@ -1,7 +1,9 @@
 //! What a known problem is, and how it is run: with any transcription, on a fixed mesh or refined.
 
 use nalgebra::{RealField, SVector};
-use traj_opt::{Guess, Mesh, Options, Problem, RefineOptions, Status, Transcription, solve, solve_refined};
+use traj_opt::{
+    Guess, LinearAlgebra, Mesh, Options, Problem, RefineOptions, Status, Transcription, solve, solve_refined,
+};
 
 #[allow(dead_code)]
 pub const INF: f64 = f64::INFINITY;
@@ -41,7 +43,7 @@ fn is_low_order(transcription: Transcription) -> bool {
     matches!(transcription, Transcription::RungeKutta { .. } | Transcription::Trapezoidal)
 }
 
-type Run = Box<dyn Fn(Transcription, &Mode, f64) -> Row>;
+type Run = Box<dyn Fn(Transcription, &Mode, &Options) -> Row>;
 
 /// A problem with its reference value.
 pub struct Known {
@@ -67,18 +69,17 @@ impl Known {
         tolerance: f64,
         segments: usize,
     ) -> Self {
-        let run = move |transcription, mode: &Mode, tolerance| {
-            let options = Options::default().with_max_iterations(1000).with_tolerance(tolerance);
+        let run = move |transcription, mode: &Mode, options: &Options| {
             let (s, iterations, error) = match mode {
                 Mode::Fixed(n) => {
-                    let s = solve(&problem, &Mesh::uniform(*n), transcription, &guess, &options)
+                    let s = solve(&problem, &Mesh::uniform(*n), transcription, &guess, options)
                         .expect("valid input");
                     let iterations = s.iterations;
                     (s, iterations, f64::NAN)
                 }
                 Mode::Refined(n, refine) => {
                     let mesh = Mesh::uniform(*n);
-                    let r = solve_refined(&problem, &mesh, transcription, &guess, &options, refine)
+                    let r = solve_refined(&problem, &mesh, transcription, &guess, options, refine)
                         .expect("valid input");
                     (r.solution, r.iterations, r.error)
                 }
@@ -149,8 +150,13 @@ impl Known {
     }
 
     pub fn run(&self, transcription: Transcription, mode: &Mode) -> Row {
+        self.run_with(transcription, mode, LinearAlgebra::default())
+    }
+
+    pub fn run_with(&self, transcription: Transcription, mode: &Mode, algebra: LinearAlgebra) -> Row {
         let tolerance = if self.exact { FINE } else { Options::default().tolerance };
-        let row = (self.run)(transcription, mode, tolerance);
+        let options = Options::default().with_max_iterations(1000).with_tolerance(tolerance);
+        let row = (self.run)(transcription, mode, &options.with_linear_algebra(algebra));
         Row { value: self.sign * row.value, ..row }
     }
 

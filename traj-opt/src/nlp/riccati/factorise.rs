@@ -31,6 +31,10 @@ impl<const NX: usize> Riccati<NX> {
     /// # Errors
     /// [`NotConvex`] if the Hessian is not positive definite on the null space of the constraints.
     pub fn factorise(&mut self, lq: &Quadratic<NX>, reg: &Regularisation<NX>) -> Result<(), NotConvex> {
+        #[cfg(feature = "faer")]
+        if let Some(sparse) = &mut self.sparse {
+            return sparse.factorise(lq, reg, &self.free_start, self.free_time);
+        }
         dispatch(Factorise { riccati: self, lq, reg })
     }
 

@@ -84,6 +84,9 @@ pub(crate) struct Riccati<const NX: usize> {
     control_rows: Vec<Panel<NX>>,
     /// Control of every segment from which on `cross` may be other than zero.
     first_cross: Vec<usize>,
+    /// The general factorisation that takes the recursion's place where it is asked for.
+    #[cfg(feature = "faer")]
+    pub sparse: Option<crate::nlp::sparse::Sparse>,
 }
 
 impl<const NX: usize> Riccati<NX> {

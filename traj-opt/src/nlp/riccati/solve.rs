@@ -46,6 +46,11 @@ impl<const NX: usize> Riccati<NX> {
         rhs: &Rhs<NX>,
         step: &mut Step<NX>,
     ) {
+        #[cfg(feature = "faer")]
+        if let Some(sparse) = &mut self.sparse {
+            sparse.solve(lq, rhs, step);
+            return;
+        }
         dispatch(Solve { riccati: self, lq, state_weight, rhs, step });
     }
 
