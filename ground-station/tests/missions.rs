@@ -69,6 +69,9 @@ fn look_at_document(text: &str) -> Result<(), Box<dyn Error>> {
             assert!(leg.transition.controls.values().all(|column| column.len() == controls));
         }
         assert!((vehicle.duration_s - (time - start)).abs() < 1e-9);
+        let execution = &vehicle.execution;
+        assert_eq!((execution.way.as_str(), execution.circles.len()), ("stream", vehicle.route.len()));
+        assert!(execution.circles.iter().all(|circle| (352.0..=360.0).contains(&circle.seen_deg)));
     }
     assert!(circled.iter().all(|&times| times == 1), "{circled:?}");
     assert!(document.certificate.makespan_lower_bound_s <= document.team.makespan_s);

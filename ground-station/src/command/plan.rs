@@ -1,6 +1,7 @@
 //! `plan`: from a mission file to a folder.
 
 use super::outputs::{extremes, outputs, sampled};
+use crate::execution::streamed;
 use crate::export::folder;
 use crate::export::members;
 use crate::failure::Failure;
@@ -97,7 +98,11 @@ pub(crate) fn search(file: &MissionFile, quiet: bool) -> Result<Plan, Failure> {
 fn summary(file: &MissionFile, plan: &Plan) -> Result<String, Failure> {
     let mut text = report::vehicle_table(&rows(file, plan)?).render();
     text.push('\n');
-    for line in report::certificate_lines(plan).into_iter().chain(report::camera_line(&file.mission, plan)) {
+    let executions: Vec<_> = plan.vehicles.iter().map(|vehicle| streamed(file, plan, vehicle)).collect();
+    let lines = report::certificate_lines(plan).into_iter();
+    for line in
+        lines.chain(report::execution_line(&executions)).chain(report::camera_line(&file.mission, plan))
+    {
         text.push_str(&format!("{line}\n"));
     }
     Ok(text)

@@ -12,7 +12,7 @@
 pub mod limits;
 mod outcome;
 
-pub use outcome::{CircleOutcome, Execution, execution};
+pub use outcome::{CircleOutcome, Execution, execution, streamed};
 
 use crate::input::Autopilot;
 use limits::{

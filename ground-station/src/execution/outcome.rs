@@ -5,10 +5,10 @@ use super::limits::{
     rest_to_rest,
 };
 use super::{LoiterItem, Way};
-use crate::export::qgc::{CircleTask, VehicleMission};
-use crate::input::Autopilot;
+use crate::export::qgc::{CircleTask, VehicleMission, vehicle_mission};
+use crate::input::{Autopilot, MissionFile};
 use crate::words;
-use planner::Sample;
+use planner::{Plan, Sample, VehiclePlan};
 use std::f64::consts::TAU;
 
 /// What becomes of a vehicle's plan.
@@ -66,6 +66,14 @@ pub fn execution(
         ));
     }
     Execution { way, duration, circles, warnings }
+}
+
+/// What becomes of a vehicle's plan that is streamed, which is the default; without a look at the autopilot's shaping, hence without
+/// that warning.
+#[must_use]
+pub fn streamed(file: &MissionFile, plan: &Plan, vehicle: &VehiclePlan) -> Execution {
+    let flown = vehicle_mission(file, plan, vehicle);
+    execution(Way::Stream, file.autopilot, &flown, vehicle.duration(), &[])
 }
 
 fn circle(way: Way, task: &CircleTask) -> CircleOutcome {

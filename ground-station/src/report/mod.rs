@@ -160,6 +160,14 @@ pub fn certificate_lines(plan: &Plan) -> Vec<String> {
     lines
 }
 
+/// How the vehicles fly their plans unless they are told otherwise, and what they then see of their targets.
+#[must_use]
+pub fn execution_line(executions: &[Execution]) -> Option<String> {
+    let seen = executions.iter().flat_map(|execution| &execution.circles).map(|circle| circle.seen);
+    let least = seen.reduce(f64::min)?.to_degrees();
+    Some(format!("execution: streamed; at least {least:.0} degrees of every target are seen"))
+}
+
 /// The share of its circle during which each target is in the picture; nothing without a camera.
 #[must_use]
 pub fn camera_line(mission: &Mission, plan: &Plan) -> Option<String> {

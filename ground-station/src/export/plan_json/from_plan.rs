@@ -1,10 +1,11 @@
 //! From a plan of the planner to the document.
 
 use super::{
-    ApproachEntry, CandidateEntry, CertificateEntry, CircleEntry, LegEntry, LoiterEntry, MissEntry,
-    MissionEntry, OriginEntry, OutcomeEntry, PlanDocument, TargetEntry, TeamEntry, TransitionEntry, VERSION,
-    VehicleEntry,
+    ApproachEntry, CandidateEntry, CertificateEntry, CircleEntry, ExecutedCircleEntry, ExecutionEntry,
+    LegEntry, LoiterEntry, MissEntry, MissionEntry, OriginEntry, OutcomeEntry, PlanDocument, TargetEntry,
+    TeamEntry, TransitionEntry, VERSION, VehicleEntry,
 };
+use crate::execution::{CircleOutcome, Execution, streamed};
 use crate::export::columns::{by_column, control_columns, state_columns};
 use crate::export::folder::FORMAT;
 use crate::export::json;
@@ -35,12 +36,7 @@ impl PlanDocument {
                 distance_m: approach.distance,
             }),
             warnings: warnings.to_vec(),
-            vehicles: plan
-                .vehicles
-                .iter()
-                .enumerate()
-                .map(|(index, vehicle)| vehicle_entry(plan, index, vehicle))
-                .collect(),
+            vehicles: (0..plan.vehicles.len()).map(|index| vehicle_entry(file, plan, index)).collect(),
         }
     }
 
@@ -127,7 +123,8 @@ fn certificate_entry(plan: &Plan) -> CertificateEntry {
     }
 }
 
-fn vehicle_entry(plan: &Plan, index: usize, vehicle: &VehiclePlan) -> VehicleEntry {
+fn vehicle_entry(file: &MissionFile, plan: &Plan, index: usize) -> VehicleEntry {
+    let vehicle = &plan.vehicles[index];
     let [number, flight] = words::flight_numbers(plan, index);
     VehicleEntry {
         vehicle: number,
@@ -141,7 +138,22 @@ fn vehicle_entry(plan: &Plan, index: usize, vehicle: &VehiclePlan) -> VehicleEnt
         transition_time_s: vehicle.transition_time(),
         loiter_time_s: vehicle.loiter_time(),
         length_m: vehicle.length(),
+        execution: execution_entry(&streamed(file, plan, vehicle)),
         legs: vehicle.legs.iter().enumerate().map(|(index, leg)| leg_entry(index, leg)).collect(),
+    }
+}
+
+fn execution_entry(execution: &Execution) -> ExecutionEntry {
+    let circle = |circle: &CircleOutcome| ExecutedCircleEntry {
+        targets: circle.name.clone(),
+        radius_m: circle.radius,
+        duration_s: circle.duration,
+        seen_deg: circle.seen.to_degrees(),
+    };
+    ExecutionEntry {
+        way: words::word(&words::WAYS, &execution.way).to_owned(),
+        duration_s: execution.duration,
+        circles: execution.circles.iter().map(circle).collect(),
     }
 }
 

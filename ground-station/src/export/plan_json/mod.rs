@@ -144,7 +144,31 @@ pub struct VehicleEntry {
     pub transition_time_s: f64,
     pub loiter_time_s: f64,
     pub length_m: f64,
+    /// How it is flown, and what becomes of its circles then.
+    pub execution: ExecutionEntry,
     pub legs: Vec<LegEntry>,
+}
+
+/// What an autopilot makes of a vehicle's flight.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct ExecutionEntry {
+    pub way: String,
+    /// Time in the air by that way.
+    pub duration_s: f64,
+    /// In the order of the route.
+    pub circles: Vec<ExecutedCircleEntry>,
+}
+
+/// A circle as it will be flown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct ExecutedCircleEntry {
+    /// "3", or "3+5" where targets are circled together.
+    pub targets: String,
+    pub radius_m: f64,
+    pub duration_s: f64,
+    pub seen_deg: f64,
 }
 
 /// A transition and the loiter at its end; the last leg leads back to the pad and has none.
