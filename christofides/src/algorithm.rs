@@ -64,6 +64,10 @@ impl Options {
 /// # Errors
 /// Distances that are not finite, symmetric and non-negative; [`Error::TriangleInequality`] if the metric does not
 /// promise the triangle inequality and breaks it.
+///
+/// # Complexity
+/// `O(n log n)` typically for points, `O(n^2)` and the matching for other metrics. What does not promise the triangle
+/// inequality costs [`validate`](crate::validate)'s `O(n^3)` on top; a [`Metric`] that keeps it should say so.
 pub fn christofides(metric: &impl Metric) -> Result<Tour, Error> {
     validate_promised(metric)?;
     from_tree_and_matching(metric)
@@ -92,7 +96,8 @@ pub(crate) fn from_tree_and_matching(metric: &impl Metric) -> Result<Tour, Error
 /// A short tour with a lower bound: exact if small, else Christofides' tour improved within the budget of `options`.
 ///
 /// Distances that break the triangle inequality are taken too if the metric says so; the tour then has no guarantee but
-/// its own bound. `should_stop` is asked now and then and ends the improvement early.
+/// its own bound. `should_stop` is asked now and then and ends the improvement early; the check of the distances (`O(n^2)`
+/// without coordinates), Christofides' tour and, up to 1000 vertices, the bound are not interrupted.
 ///
 /// # Errors
 /// Distances that are not finite, symmetric and non-negative.
