@@ -1,7 +1,7 @@
 //! Chained local search: kick, repair, keep what is no worse (Martin, Otto, Felten 1991; Applegate, Cook, Rohe 2003).
 //!
-//! To keep slightly longer tours for a while as well (record-to-record travel, Dueck 1993) was better on pcb442, pr1002 and
-//! uniform points, and worse on ch150 and rat783, over 20 seeds in equal time; so it is left out.
+//! To keep slightly longer tours for a while as well (record-to-record travel, Dueck 1993) changed what 20 seeds found in equal
+//! time by little more than noise, for better on pcb442 and uniform points and for worse on ch150 and rat783; it is left out.
 
 use super::kick::kick;
 use super::lin_kernighan::{Arrays, Search};
