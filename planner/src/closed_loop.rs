@@ -2,7 +2,6 @@
 
 use crate::mission::Mission;
 use crate::plan::Plan;
-use crate::sample::Sampler;
 use quad_dynamics::Motion;
 use quad_dynamics::simulation::{Flight, SimulationOptions, Tracking};
 
@@ -33,7 +32,7 @@ impl Plan {
         if !(step > 0.0 && step.is_finite()) {
             return None;
         }
-        let sampler = Sampler::new(self, mission)?;
+        let sampler = self.sampler(mission)?;
         if planned.legs.is_empty() {
             return Some(Vec::new());
         }

@@ -103,6 +103,7 @@ pub use plan::{
 pub use planning::plan;
 pub use quad_dynamics::{Direction, LoiterYaw, ShapingLimits};
 pub use replan::{Event, Replanner, Update};
+pub use sample::Sampler;
 pub use verify::{Failure, LegCheck, Tolerances, Verification};
 
 #[cfg(doctest)]

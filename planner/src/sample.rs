@@ -8,8 +8,22 @@ use quad_dynamics::Motion;
 use quad_dynamics::frames::to_wxyz;
 use std::sync::OnceLock;
 
-/// A plan together with what its mission says of vehicle and circles, ready to be asked for moments.
-pub(crate) struct Sampler<'a> {
+/// A plan ready to be asked for many moments: every transition is integrated once, when it is first asked for.
+///
+/// # Examples
+/// ```
+/// use planner::quad_dynamics::{Vehicle, VehicleParameters};
+/// use planner::{Entries, Mission, Options, Target, plan};
+///
+/// let mut mission = Mission::new(Vehicle::new(VehicleParameters::survey_450())?, 1, vec![Target::at([15.0, 5.0])]);
+/// mission.transition.entries = Entries::Sampled(2);
+/// let plan = plan(&mission, &Options::default())?;
+/// let sampler = plan.sampler(&mission).ok_or("another mission's plan")?;
+/// let highest = sampler.samples(0, 0.02).map(|sample| sample.position[2]).fold(0.0, f64::max);
+/// assert!(highest < mission.transition.heights[1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Sampler<'a> {
     plan: &'a Plan,
     mission: &'a Mission,
     airs: Airs<'a>,
@@ -29,8 +43,27 @@ impl<'a> Sampler<'a> {
         Some(Self { plan, mission, airs, paths: paths.collect() })
     }
 
-    /// The moment `time` (s after the mission's start) of a vehicle; hover on its pad before and after its flight.
-    pub(crate) fn sample(&self, vehicle: usize, time: f64) -> Sample {
+    /// Where a vehicle is `time` seconds after the mission's start; on its pad before and after its flight. `None` if there is no such
+    /// vehicle.
+    ///
+    /// # Complexity
+    /// The first moment of a transition integrates it; any other takes the logarithm of the numbers of legs and segments.
+    #[must_use]
+    pub fn sample(&self, vehicle: usize, time: f64) -> Option<Sample> {
+        (vehicle < self.plan.vehicles.len()).then(|| self.moment(vehicle, time))
+    }
+
+    /// A vehicle's flight every `step` seconds, its last moment included; nothing for a spare vehicle, for one that there is not, or
+    /// for a step that is not positive.
+    pub fn samples(&self, vehicle: usize, step: f64) -> impl Iterator<Item = Sample> + '_ {
+        let planned = self.plan.vehicles.get(vehicle).filter(|planned| !planned.legs.is_empty());
+        let flight = planned.filter(|_| step > 0.0 && step.is_finite());
+        let [start, end] = flight.map_or([0.0; 2], |planned| [planned.start_time(), planned.end_time()]);
+        let n = flight.map_or(0, |_| ((end - start) / step).ceil() as usize + 1);
+        (0..n).map(move |i| self.moment(vehicle, (start + i as f64 * step).min(end)))
+    }
+
+    fn moment(&self, vehicle: usize, time: f64) -> Sample {
         let (motion, phase, circle) = self.motion(vehicle, time);
         Sample {
             time,
@@ -108,13 +141,19 @@ impl Plan {
         Some(Sampler::new(self, mission)?.energy(vehicle))
     }
 
+    /// The plan ready to be asked for many moments. `None` if `mission` is not the one that was planned.
+    #[must_use]
+    pub fn sampler<'a>(&'a self, mission: &'a Mission) -> Option<Sampler<'a>> {
+        Sampler::new(self, mission)
+    }
+
     /// Where a vehicle is `time` seconds after the mission's start; on its pad before and after its flight.
     ///
-    /// `None` if there is no such vehicle, or if `mission` is not the one that was planned.
+    /// For one moment; many are asked of a [`Sampler`]. `None` if there is no such vehicle, or if `mission` is not the one that was
+    /// planned.
     #[must_use]
     pub fn sample(&self, mission: &Mission, vehicle: usize, time: f64) -> Option<Sample> {
-        (vehicle < self.vehicles.len()).then_some(())?;
-        Some(Sampler::new(self, mission)?.sample(vehicle, time))
+        self.sampler(mission)?.sample(vehicle, time)
     }
 
     /// A vehicle's flight at `rate` (Hz, above 0), its last moment included; empty for a spare vehicle.
@@ -122,14 +161,7 @@ impl Plan {
     /// `None` if there is no such vehicle, if the rate is not positive, or if `mission` is not the one that was planned.
     #[must_use]
     pub fn samples(&self, mission: &Mission, vehicle: usize, rate: f64) -> Option<Vec<Sample>> {
-        let legs = &self.vehicles.get(vehicle)?.legs;
-        if !(rate > 0.0 && rate.is_finite()) {
-            return None;
-        }
-        let sampler = Sampler::new(self, mission)?;
-        let (Some(first), Some(last)) = (legs.first(), legs.last()) else { return Some(Vec::new()) };
-        let (start, end) = (first.start_time, last.end_time());
-        let steps = ((end - start) * rate).ceil() as usize;
-        Some((0..=steps).map(|i| sampler.sample(vehicle, (start + i as f64 / rate).min(end))).collect())
+        (vehicle < self.vehicles.len() && rate > 0.0 && rate.is_finite()).then_some(())?;
+        Some(self.sampler(mission)?.samples(vehicle, 1.0 / rate).collect())
     }
 }

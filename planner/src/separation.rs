@@ -30,7 +30,7 @@ pub(crate) fn in_the_air<R>(
         let sampler = &sampler;
         let speeds = planned.legs.iter().map(|leg| sampler.top_speed(leg));
         Some(Airborne {
-            position: Box::new(move |time| sampler.sample(vehicle, time).position),
+            position: Box::new(move |time| sampler.motion(vehicle, time).0.position.into()),
             flight: [first.start_time, last.end_time()],
             top_speed: speeds.fold(0.0, f64::max),
         })

@@ -348,3 +348,26 @@ fn budgets_are_iterations() {
     assert!(candidates.iter().all(|candidate| matches!(candidate.outcome, Outcome::Failed { .. })));
     assert!(plan(&mission, &Options::default().with_solver_iterations(300)).is_ok());
 }
+
+#[test]
+fn a_sampler_gives_the_moments_of_the_plan() {
+    let mission = small(Model::ThrustRate);
+    let plan = planned(&mission);
+    let sampler = plan.sampler(&mission).unwrap();
+    for vehicle in 0..plan.vehicles.len() {
+        let samples: Vec<_> = sampler.samples(vehicle, 0.02).collect();
+        assert_eq!(samples, plan.samples(&mission, vehicle, 50.0).unwrap());
+        for sample in samples.iter().step_by(97) {
+            assert_eq!(Some(*sample), plan.sample(&mission, vehicle, sample.time));
+            assert_eq!(Some(*sample), sampler.sample(vehicle, sample.time));
+        }
+    }
+    assert_eq!(sampler.sample(2, 0.0), None);
+    for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(sampler.samples(0, step).count(), 0);
+    }
+    assert_eq!(sampler.samples(7, 1.0).count(), 0);
+    let mut other = mission.clone();
+    other.targets.pop();
+    assert!(plan.sampler(&other).is_none());
+}
