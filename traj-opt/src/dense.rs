@@ -15,7 +15,8 @@ pub(crate) trait Kernel {
 }
 
 /// Runs a kernel compiled for the widest vector instructions that the processor has, with fused multiply-add where the
-/// processor has that. Results are the same to the bit on the same machine, and differ in rounding between machines.
+/// processor has that; up to those of 256 bits, since those of 512 take 9 % longer on a processor that has them (rows here are as long as
+/// a model has states, and rarely fill them). Results are the same to the bit on the same machine, and differ in rounding between machines.
 #[cfg(target_arch = "x86_64")]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     struct Wide<K>(K);
@@ -81,6 +82,62 @@ pub(crate) fn pieces(n: usize) -> usize {
     n.div_ceil(LANES)
 }
 
+/// Rows of `W` numbers, one after another.
+#[inline(always)]
+pub(crate) fn rows<const W: usize>(numbers: &[f64]) -> &[[f64; W]] {
+    numbers.as_chunks().0
+}
+
+/// Rows of `W` numbers, one after another.
+#[inline(always)]
+pub(crate) fn rows_mut<const W: usize>(numbers: &mut [f64]) -> &mut [[f64; W]] {
+    numbers.as_chunks_mut().0
+}
+
+/// Panels of `N` rows of `W` numbers, one after another.
+#[inline(always)]
+pub(crate) fn panels<const W: usize, const N: usize>(numbers: &[f64]) -> &[[[f64; W]; N]] {
+    rows(numbers).as_chunks().0
+}
+
+/// Panels of `N` rows of `W` numbers, one after another.
+#[inline(always)]
+pub(crate) fn panels_mut<const W: usize, const N: usize>(numbers: &mut [f64]) -> &mut [[[f64; W]; N]] {
+    rows_mut(numbers).as_chunks_mut().0
+}
+
+/// A piece of a row, padded with zeros.
+#[inline(always)]
+pub(crate) fn piece_of(row: &[f64], piece: usize) -> Lanes {
+    let (whole, rest) = row.as_chunks::<LANES>();
+    match whole.get(piece) {
+        Some(piece) => *piece,
+        None => {
+            let mut padded = [0.0; LANES];
+            padded[..rest.len()].copy_from_slice(rest);
+            padded
+        }
+    }
+}
+
+/// Lays columns side by side in panels.
+#[inline(always)]
+pub(crate) fn fill_panels<const N: usize>(columns: &[SVector<f64, N>], panels: &mut [Panel<N>]) {
+    for (columns, panel) in columns.chunks(LANES).zip(panels) {
+        if let [a, b, c, d] = columns {
+            for i in 0..N {
+                panel[i] = [a[i], b[i], c[i], d[i]];
+            }
+            continue;
+        }
+        for (lane, column) in columns.iter().enumerate() {
+            for i in 0..N {
+                panel[i][lane] = column[i];
+            }
+        }
+    }
+}
+
 /// Columns of a matrix that are not zero.
 pub(crate) struct Used<const N: usize> {
     index: [usize; N],
@@ -104,6 +161,16 @@ impl<const N: usize> Used<N> {
     fn indices(&self) -> &[usize] {
         &self.index[..self.count]
     }
+}
+
+/// Which columns of a matrix are zero.
+#[inline(always)]
+pub(crate) fn zero_columns<const R: usize, const N: usize>(a: &Matrix<R, N>) -> [bool; N] {
+    let mut zero = [false; N];
+    for k in 0..N {
+        zero[k] = is_zero(&a.data.0[k]);
+    }
+    zero
 }
 
 /// True if all numbers are zero; no early end, so that it is done with wide instructions.
@@ -173,15 +240,6 @@ pub(crate) trait Arithmetic {
         out
     }
 
-    /// `a b` for an `a` of which some columns are zero: derivatives of a model by variables that it does not depend on.
-    #[inline(always)]
-    fn mul_thin<const R: usize, const K: usize, const C: usize>(
-        a: &Matrix<R, K>,
-        b: &Matrix<K, C>,
-    ) -> Matrix<R, C> {
-        Self::mul_used(a, b, &Used::columns_of(a))
-    }
-
     /// `a b` over some columns of `a`.
     #[inline(always)]
     fn mul_used<const R: usize, const K: usize, const C: usize>(
@@ -198,37 +256,6 @@ pub(crate) trait Arithmetic {
             out.data.0[j] = column;
         }
         out
-    }
-
-    /// `a b` for a square `b` that shares some columns with the identity.
-    #[inline(always)]
-    fn mul_units<const R: usize, const K: usize>(a: &Matrix<R, K>, b: &Matrix<K, K>) -> Matrix<R, K> {
-        let mut out = Matrix::<R, K>::zeros();
-        for j in 0..K {
-            let mut column = a.data.0[j];
-            if !is_unit(&b.data.0[j], j) {
-                column = [0.0; R];
-                for k in 0..K {
-                    Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
-                }
-            }
-            out.data.0[j] = column;
-        }
-        out
-    }
-
-    /// `a x` over some columns of `a`.
-    #[inline(always)]
-    fn mul_vec_used<const R: usize, const K: usize>(
-        a: &Matrix<R, K>,
-        x: &SVector<f64, K>,
-        used: &Used<K>,
-    ) -> SVector<f64, R> {
-        let mut out = [0.0; R];
-        for &k in used.indices() {
-            Self::axpy(&mut out, x[k], &a.data.0[k]);
-        }
-        SVector::from(out)
     }
 
     /// `a x`.
@@ -254,7 +281,11 @@ pub(crate) trait Arithmetic {
 
     /// `start` plus the sum over k of `x[k] rows[k]`.
     #[inline(always)]
-    fn combine<const N: usize>(start: Lanes, x: &[f64; N], rows: &[Lanes; N]) -> Lanes {
+    fn combine<const N: usize, const W: usize>(
+        start: [f64; W],
+        x: &[f64; N],
+        rows: &[[f64; W]; N],
+    ) -> [f64; W] {
         let mut sum = start;
         for k in 0..N {
             Self::axpy(&mut sum, x[k], &rows[k]);
@@ -262,25 +293,34 @@ pub(crate) trait Arithmetic {
         sum
     }
 
-    /// `start` minus the sum over j of `x[j] rows[j]`.
+    /// `row += x' panels`, a row in pieces of which the last may be shorter.
     #[inline(always)]
-    fn subtract(start: Lanes, x: impl IntoIterator<Item = f64>, rows: &[Lanes]) -> Lanes {
-        let mut sum = start;
-        for (x, row) in x.into_iter().zip(rows) {
-            Self::axpy(&mut sum, -x, row);
+    fn add_pieces<const N: usize>(row: &mut [f64], x: &[f64; N], panels: &[Panel<N>]) {
+        let (whole, rest) = row.as_chunks_mut::<LANES>();
+        for (piece, panel) in whole.iter_mut().zip(panels) {
+            *piece = Self::combine(*piece, x, panel);
         }
-        sum
+        if let Some(panel) = panels.get(whole.len()) {
+            let sums = Self::combine([0.0; LANES], x, panel);
+            for (r, sum) in rest.iter_mut().zip(sums) {
+                *r += sum;
+            }
+        }
     }
 
-    /// Inverse by Gauss-Jordan elimination with pivots chosen in rows; `None` if a pivot is zero.
+    /// Inverse by Gauss-Jordan elimination with pivots chosen in rows; `None` if a pivot is zero. Columns that are `idle` are
+    /// those of the identity, as they then are in the inverse.
     #[inline(always)]
-    fn inverse<const N: usize>(a: &Matrix<N, N>) -> Option<Matrix<N, N>> {
+    fn inverse<const N: usize>(a: &Matrix<N, N>, idle: &[bool; N]) -> Option<Matrix<N, N>> {
         let mut c = a.data.0;
-        let mut order = [0; N];
+        let (mut order, mut exchanged) = ([0; N], false);
         for (i, place) in order.iter_mut().enumerate() {
             *place = i;
         }
         for k in 0..N {
+            if idle[k] {
+                continue;
+            }
             let mut best = k;
             for j in k + 1..N {
                 if c[j][k].abs() > c[best][k].abs() {
@@ -290,25 +330,30 @@ pub(crate) trait Arithmetic {
             if c[best][k].is_nan() || c[best][k] == 0.0 {
                 return None;
             }
-            c.swap(k, best);
-            order.swap(k, best);
-            if best == k && is_unit(&c[k], k) {
-                continue; // the step would change nothing
+            // an idle column has nothing in this row and is never exchanged
+            if best != k {
+                c.swap(k, best);
+                order.swap(k, best);
+                exchanged = true;
             }
             let pivot = 1.0 / c[k][k];
             let own = c[k];
             for j in 0..N {
+                if j == k || idle[j] {
+                    continue;
+                }
                 let share = c[j][k] * pivot;
-                let mut column = [0.0; N];
                 for i in 0..N {
                     let reduced = Self::madd(-share, own[i], c[j][i]);
-                    column[i] = if i == k { share } else { reduced };
+                    c[j][i] = if i == k { share } else { reduced };
                 }
-                c[j] = column;
             }
             for i in 0..N {
                 c[k][i] = if i == k { pivot } else { -own[i] * pivot };
             }
+        }
+        if !exchanged {
+            return Some(Matrix::from_data(nalgebra::ArrayStorage(c)));
         }
         // rows of the inverse belong to the columns as they were before the exchanges
         let mut out = Matrix::<N, N>::zeros();
@@ -367,7 +412,7 @@ pub(crate) fn mul_thin<const R: usize, const K: usize, const C: usize>(
     a: &Matrix<R, K>,
     b: &Matrix<K, C>,
 ) -> Matrix<R, C> {
-    Separate::mul_thin(a, b)
+    Separate::mul_used(a, b, &Used::columns_of(a))
 }
 
 /// `a x`.

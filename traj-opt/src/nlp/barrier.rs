@@ -10,6 +10,8 @@ pub(crate) struct Box {
     pub z_upper: Vec<f64>,
     pub dz_lower: Vec<f64>,
     pub dz_upper: Vec<f64>,
+    /// Variables that have a bound.
+    bounded: Vec<usize>,
 }
 
 /// How far inside its bounds a starting point is moved, absolutely and relative to the width (kappa_1, kappa_2 of IPOPT).
@@ -33,8 +35,13 @@ impl Box {
         }
     }
 
-    /// Relaxes finite bounds slightly, so that a strict interior exists (IPOPT's `bound_relax_factor`).
+    /// To be called when all bounds are set: relaxes finite ones slightly, so that a strict interior exists (IPOPT's
+    /// `bound_relax_factor`).
     pub fn relax(&mut self, factor: f64) {
+        let bounds = self.lower.iter().zip(&self.upper);
+        self.bounded.clear();
+        self.bounded
+            .extend(bounds.enumerate().filter(|(_, (l, u))| l.is_finite() || u.is_finite()).map(|(i, _)| i));
         for v in &mut self.lower {
             *v -= factor * v.abs().max(1.0);
         }
@@ -86,19 +93,17 @@ impl Box {
         // products of a few distances at a time: logarithms are the dearest part of a trial point
         let mut product = 1.0;
         let mut sum = 0.0;
-        for i in 0..w.len() {
+        for &i in &self.bounded {
             for d in [w[i] - self.lower[i], self.upper[i] - w[i]] {
-                if d.is_finite() {
-                    if d <= 0.0 {
-                        return f64::INFINITY;
-                    }
+                if d.is_nan() || d <= 0.0 {
+                    return f64::INFINITY;
+                }
+                if d < f64::INFINITY {
                     product *= d;
                     if !(1e-100..=1e100).contains(&product) {
                         sum += product.ln();
                         product = 1.0;
                     }
-                } else if d.is_nan() {
-                    return f64::INFINITY;
                 }
             }
         }
@@ -107,7 +112,7 @@ impl Box {
 
     /// Newton directions of the multipliers for the direction `dw`.
     pub fn directions(&mut self, w: &[f64], dw: &[f64], mu: f64) {
-        for i in 0..w.len() {
+        for &i in &self.bounded {
             if self.lower[i].is_finite() {
                 let d = w[i] - self.lower[i];
                 self.dz_lower[i] = (mu - self.z_lower[i] * dw[i]) / d - self.z_lower[i];
@@ -122,7 +127,7 @@ impl Box {
     /// Greatest step in `[0, 1]` that keeps `1 - tau` of every distance to a bound.
     pub fn primal_step(&self, w: &[f64], dw: &[f64], tau: f64) -> f64 {
         let mut alpha: f64 = 1.0;
-        for i in 0..w.len() {
+        for &i in &self.bounded {
             if dw[i] < 0.0 {
                 let room = tau * (w[i] - self.lower[i]);
                 if -dw[i] * alpha > room {
@@ -142,7 +147,7 @@ impl Box {
     pub fn dual_step(&self, tau: f64) -> f64 {
         let mut alpha: f64 = 1.0;
         for (z, dz) in [(&self.z_lower, &self.dz_lower), (&self.z_upper, &self.dz_upper)] {
-            for i in 0..z.len() {
+            for &i in &self.bounded {
                 if -dz[i] * alpha > tau * z[i] {
                     alpha = tau * z[i] / -dz[i];
                 }
@@ -153,7 +158,7 @@ impl Box {
 
     /// Moves the multipliers and keeps them comparable with `mu / distance` at the new `w`.
     pub fn update_multipliers(&mut self, w: &[f64], alpha: f64, mu: f64) {
-        for i in 0..w.len() {
+        for &i in &self.bounded {
             if self.lower[i].is_finite() {
                 let primal = mu / (w[i] - self.lower[i]);
                 let z = self.z_lower[i] + alpha * self.dz_lower[i];
@@ -170,7 +175,7 @@ impl Box {
     /// Greatest deviation of `z * distance` from `mu`.
     pub fn complementarity(&self, w: &[f64], mu: f64) -> f64 {
         let mut worst: f64 = 0.0;
-        for i in 0..w.len() {
+        for &i in &self.bounded {
             if self.lower[i].is_finite() {
                 worst = worst.max((self.z_lower[i] * (w[i] - self.lower[i]) - mu).abs());
             }
@@ -183,9 +188,16 @@ impl Box {
 
     /// Sum of all multipliers and number of bounds.
     pub fn multiplier_sum(&self) -> (f64, usize) {
-        let sum = self.z_lower.iter().chain(&self.z_upper).sum();
-        let count = self.lower.iter().chain(&self.upper).filter(|v| v.is_finite()).count();
-        (sum, count)
+        let side = |z: &[f64], bound: &[f64]| {
+            let (mut sum, mut count) = (0.0, 0);
+            for &i in &self.bounded {
+                sum += z[i];
+                count += usize::from(bound[i].is_finite());
+            }
+            (sum, count)
+        };
+        let (lower, upper) = (side(&self.z_lower, &self.lower), side(&self.z_upper, &self.upper));
+        (lower.0 + upper.0, lower.1 + upper.1)
     }
 }
 

@@ -5,7 +5,7 @@ use super::boundary::BoundaryRows;
 use super::layout::{Layout, Place};
 use super::program::{Duals, Linearisation, Values};
 use super::quadratic::{Quadratic, Rhs, Step};
-use crate::dense::{Arithmetic, Kernel, LANES, Used, array};
+use crate::dense::{Arithmetic, Kernel, LANES, array, fill_panels, pieces};
 use crate::dense::{axpy, dispatch, rank_one, vector};
 use nalgebra::{SMatrix, SVector};
 
@@ -124,54 +124,39 @@ impl<const NX: usize, const NU: usize> System<'_, NX, NU> {
         for (k, middle) in self.lin.middles.iter().enumerate() {
             let (hxx, hxu, hxp) = self.middle_hessian(k);
             let su = &self.lin.middle_su[k * m..(k + 1) * m];
-            let st = middle.sx.transpose();
-            // hxx is symmetric: its products are zero in the rows of the columns that are
-            let used = Used::columns_of(&hxx);
-            let hx = A::mul_used(&hxx, &middle.sx, &used);
-            lq.q[k] += A::mul_used(&st, &hx, &used);
+            // in memory, not in registers, number by number
+            lq.transposed[0] = middle.sx.transpose();
+            let st = &lq.transposed[0];
+            let hx = A::mul(&hxx, &middle.sx);
+            lq.q[k] += A::mul(st, &hx);
             let hp = A::mul_vec(&hxx, &middle.sp) + hxp;
-            lq.qp[k] += A::mul_vec(&st, &hp);
+            lq.qp[k] += A::mul_vec(st, &hp);
             lq.hpp += middle.sp.dot(&(hp + hxp));
             let panels = &mut lq.panels;
-            for (columns, panel) in su.chunks(LANES).zip(panels.iter_mut()) {
-                for (lane, column) in columns.iter().enumerate() {
-                    for i in 0..NX {
-                        panel[i][lane] = column[i];
-                    }
+            let mc = pieces(m);
+            let (panels, own_panels) = panels.split_at_mut(mc);
+            fill_panels(su, panels);
+            for i in 0..NU {
+                let (piece, lane) = ((NU + i) / LANES, (NU + i) % LANES);
+                for row in 0..NX {
+                    own_panels[piece][row][lane] = hxu[(row, i)];
                 }
             }
             // products with all columns of su at a time: single dot products would not be vectorised
-            for (rp, panel) in lq.rp[k * m..(k + 1) * m].chunks_mut(LANES).zip(panels.iter()) {
-                let sums = A::combine([0.0; LANES], array(&hp), panel);
-                for (rp, sum) in rp.iter_mut().zip(sums) {
-                    *rp += sum;
-                }
-            }
+            A::add_pieces(&mut lq.rp[k * m..(k + 1) * m], array(&hp), panels);
+            let own_pieces = NU / LANES..pieces(2 * NU);
             for j in 0..m {
-                let mut column = A::mul_vec_used(&hxx, &su[j], &used);
+                let mut column = A::mul_vec(&hxx, &su[j]);
                 if (NU..2 * NU).contains(&j) {
                     let own = hxu.column(j - NU).into_owned();
                     column += own;
                     lq.rp[k * m + j] += A::dot(array(&own), array(&middle.sp));
                 }
-                lq.s[k * m + j] += A::mul_vec(&st, &column);
+                lq.s[k * m + j] += A::mul_vec(st, &column);
                 let r = &mut lq.r[(k * m + j) * m..(k * m + j + 1) * m];
-                for (r, panel) in r.chunks_mut(LANES).zip(panels.iter()) {
-                    let sums = A::combine([0.0; LANES], array(&column), panel);
-                    for (r, sum) in r.iter_mut().zip(sums) {
-                        *r += sum;
-                    }
-                }
-            }
-            // the columns of the middle control
-            for i in 0..NU {
-                let own = hxu.column(i).into_owned();
-                for (piece, panel) in panels.iter().enumerate() {
-                    let sums = A::combine([0.0; LANES], array(&own), panel);
-                    for (j, sum) in (piece * LANES..m).zip(sums) {
-                        lq.r[(k * m + j) * m + NU + i] += sum;
-                    }
-                }
+                A::add_pieces(r, array(&column), panels);
+                let r = &mut r[own_pieces.start * LANES..(own_pieces.end * LANES).min(m)];
+                A::add_pieces(r, array(&su[j]), &own_panels[own_pieces.clone()]);
             }
         }
     }

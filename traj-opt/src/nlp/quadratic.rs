@@ -32,8 +32,10 @@ pub(crate) struct Quadratic<const NX: usize> {
     pub et: Vec<f64>,
     /// Inverse barrier curvature of each boundary slack; 0 for an equality.
     pub compliance: Vec<f64>,
-    /// Scratch: the columns of one segment, transposed.
+    /// Scratch: the columns of one segment side by side, and second derivatives of its middle control in the same places.
     pub panels: Vec<Panel<NX>>,
+    /// Scratch, one: the transpose of the middle state's derivative.
+    pub transposed: Vec<SMatrix<f64, NX, NX>>,
 }
 
 impl<const NX: usize> Quadratic<NX> {
@@ -51,7 +53,9 @@ impl<const NX: usize> Quadratic<NX> {
         self.ef.resize(n_boundary, SVector::zeros());
         self.et.resize(n_boundary, 0.0);
         self.compliance.resize(n_boundary, 0.0);
-        self.panels.resize(pieces(m), [[0.0; LANES]; NX]);
+        self.transposed.resize(1, SMatrix::zeros());
+        self.panels.clear();
+        self.panels.resize(2 * pieces(m), [[0.0; LANES]; NX]);
     }
 
     /// Sets all second derivatives to zero.

@@ -9,9 +9,9 @@ use super::lu;
 use super::program::{Duals, Linearisation, Program, Values, add_control_block};
 use super::running::{self, PointModel, PointTerms, PointTime};
 use super::trapezoidal::add_end;
-use crate::dense::vector;
+use crate::dense::{Separate, vector};
 use crate::transcription::MAX_DEGREE;
-use crate::{Dynamics, Problem};
+use crate::{Dynamics, Hessian, Problem};
 use nalgebra::SVector;
 
 /// Offset of the state at collocation point `i` of segment `k`.
@@ -79,12 +79,13 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         }
         let (x, u) = (vector(w, state_offset(layout, k, j)), program.control(layout, w, k, j));
         let weight = table.weight(d - 1, j);
-        let terms = PointTerms::new(program.problem, point, &at[j], (&x, &u, second), &omega, weight);
+        let hessian = running::hessian(program.problem, &at[j], (&x, &u, second), &omega, weight);
+        let terms = PointTerms::new::<Separate>(point, &at[j], &omega, weight, &hessian);
         out.add_point_gradient(layout, (state_offset(layout, k, j), layout.control(k, j)), &terms);
         if j < q {
-            add_inner(layout, k, j, &terms, out);
+            add_inner(layout, k, j, (&terms, &hessian), out);
         } else {
-            add_end(&mut out.raw, layout.m, k, 1, j, &terms);
+            add_end(&mut out.raw, layout.m, k, 1, j, (&terms, &hessian));
         }
     }
     eliminate(layout, k, &at, &model, out);
@@ -94,15 +95,15 @@ fn add_inner<const NX: usize, const NU: usize>(
     layout: &Layout,
     k: usize,
     j: usize,
-    terms: &PointTerms<NX, NU>,
+    (terms, hessian): (&PointTerms<NX, NU>, &Hessian<NX, NU>),
     out: &mut Linearisation<NX, NU>,
 ) {
     let inner = &mut out.stages.inner[k * layout.n_inner + j];
-    inner.hxx = terms.hessian.state_state;
-    inner.hxu = terms.hessian.state_control;
+    inner.hxx = hessian.state_state;
+    inner.hxu = hessian.state_control;
     inner.hxp = terms.xp;
     out.raw.hpp += terms.pp;
-    add_control_block(&mut out.raw, layout.m, k, j, &terms.hessian.control_control);
+    add_control_block(&mut out.raw, layout.m, k, j, &hessian.control_control);
     for i in 0..NU {
         out.raw.rp[k * layout.m + j * NU + i] += terms.up[i];
     }

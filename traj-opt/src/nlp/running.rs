@@ -3,7 +3,7 @@
 use crate::autodiff::{
     constant, constant2, gradient, hessian_part, mixed_part, seed, seed_columns, seed_rows, seed2,
 };
-use crate::dense::tr_mul_vec;
+use crate::dense::Arithmetic;
 use crate::{Dynamics, Hessian, Jacobian, Problem};
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Derivative, Dual2SVec64, Dual64, DualSVec64, HyperDual64, HyperDualSVec64};
@@ -34,7 +34,6 @@ pub(crate) struct PointTerms<const NX: usize, const NU: usize> {
     pub objective_x: SVector<f64, NX>,
     pub objective_u: SVector<f64, NU>,
     pub objective_p: f64,
-    pub hessian: Hessian<NX, NU>,
     pub xp: SVector<f64, NX>,
     pub up: SVector<f64, NU>,
     pub pp: f64,
@@ -125,30 +124,40 @@ fn add_running_hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     Some(())
 }
 
+/// Second derivatives of a point's contribution to the Lagrangian; zero unless `second`.
+#[inline(always)]
+pub(crate) fn hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    problem: &P,
+    at: &PointTime,
+    (x, u, second): (&SVector<f64, NX>, &SVector<f64, NU>, bool),
+    omega: &SVector<f64, NX>,
+    omega_l: f64,
+) -> Hessian<NX, NU> {
+    if second {
+        weighted_hessian(problem, at.time, x, u, &(omega * at.h), omega_l * at.h)
+    } else {
+        Hessian::zeros()
+    }
+}
+
 impl<const NX: usize, const NU: usize> PointTerms<NX, NU> {
-    /// Derivatives of `h (omega . f + omega_l L)` at a point.
+    /// Derivatives of `h (omega . f + omega_l L)` at a point, whose second derivatives by state and control are at hand.
     #[inline(always)]
-    pub fn new<P: Problem<NX, NU>>(
-        problem: &P,
+    pub fn new<A: Arithmetic>(
         model: &PointModel<NX, NU>,
         at: &PointTime,
-        (x, u, second): (&SVector<f64, NX>, &SVector<f64, NU>, bool),
         omega: &SVector<f64, NX>,
         omega_l: f64,
+        hessian: &Hessian<NX, NU>,
     ) -> Self {
         let f = &model.f;
         let (h, dh, dt) = (at.h, at.h_rate, at.t_rate);
-        let fx = tr_mul_vec(&f.state, omega);
-        let fu = tr_mul_vec(&f.control, omega);
+        let fx = A::tr_mul_vec(&f.state, omega);
+        let fu = A::tr_mul_vec(&f.control, omega);
         let ft = f.time.dot(omega);
         let (lx, lu, lt, l) = match &model.running {
             Some(r) => (r.x * omega_l, r.u * omega_l, r.t * omega_l, r.value * omega_l),
             None => (SVector::zeros(), SVector::zeros(), 0.0, 0.0),
-        };
-        let hessian = if second {
-            weighted_hessian(problem, at.time, x, u, &(omega * h), omega_l * h)
-        } else {
-            Hessian::zeros()
         };
         Self {
             x: (fx + lx) * h,
@@ -160,7 +169,6 @@ impl<const NX: usize, const NU: usize> PointTerms<NX, NU> {
             xp: (fx + lx) * dh + hessian.state_time * dt,
             up: (fu + lu) * dh + hessian.control_time * dt,
             pp: 2.0 * dh * dt * (ft + lt) + hessian.time_time * dt * dt,
-            hessian,
         }
     }
 }

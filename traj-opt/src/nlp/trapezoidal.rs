@@ -3,8 +3,8 @@
 use super::layout::Layout;
 use super::program::{Duals, Linearisation, Program, Values, add_control_block};
 use super::running::{self, PointTerms};
-use crate::dense::{mul, mul_vec};
-use crate::{Dynamics, Problem};
+use crate::dense::{Separate, mul, mul_vec};
+use crate::{Dynamics, Hessian, Problem};
 use nalgebra::{SMatrix, SVector};
 
 /// Defect of segment `k`; returns its running cost.
@@ -57,14 +57,15 @@ pub(crate) fn linearise<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     out.add_gradient(layout.state(k), lambda.as_slice());
     out.add_gradient(layout.state(k + 1), (-lambda).as_slice());
     for i in 0..2 {
-        let terms =
-            PointTerms::new(program.problem, &model[i], &at[i], (&x[i], &u[i], second), &(lambda * 0.5), 0.5);
+        let omega = lambda * 0.5;
+        let hessian = running::hessian(program.problem, &at[i], (&x[i], &u[i], second), &omega, 0.5);
+        let terms = PointTerms::new::<Separate>(&model[i], &at[i], &omega, 0.5, &hessian);
         out.add_point_gradient(layout, (layout.state(k + i), layout.control(k, i)), &terms);
         let columns = mul(&resolve, &(model[i].f.control * half));
         for j in 0..NU {
             out.raw.b[k * m + i * NU + j] = columns.column(j).into_owned();
         }
-        add_end(&mut out.raw, m, k, i, i, &terms);
+        add_end(&mut out.raw, m, k, i, i, (&terms, &hessian));
     }
 }
 
@@ -76,17 +77,17 @@ pub(crate) fn add_end<const NX: usize, const NU: usize>(
     k: usize,
     end: usize,
     local: usize,
-    terms: &PointTerms<NX, NU>,
+    (terms, hessian): (&PointTerms<NX, NU>, &Hessian<NX, NU>),
 ) {
     let knot = k + end;
-    raw.q[knot] += terms.hessian.state_state;
+    raw.q[knot] += hessian.state_state;
     raw.qp[knot] += terms.xp;
     raw.hpp += terms.pp;
-    add_control_block(raw, m, k, local, &terms.hessian.control_control);
+    add_control_block(raw, m, k, local, &hessian.control_control);
     for j in 0..NU {
         let column = k * m + local * NU + j;
         raw.rp[column] += terms.up[j];
         let target = if end == 0 { &mut raw.s[column] } else { &mut raw.cross[column] };
-        *target += terms.hessian.state_control.column(j);
+        *target += hessian.state_control.column(j);
     }
 }

@@ -17,7 +17,7 @@ mod solve;
 mod triangular;
 
 use super::quadratic::Quadratic;
-use crate::dense::{LANES, Lanes, Panel, pieces};
+use crate::dense::{LANES, Panel, pieces};
 use nalgebra::{SMatrix, SVector};
 
 /// The reduced Hessian is not positive definite.
@@ -45,23 +45,25 @@ pub(crate) struct Riccati<const NX: usize> {
     n: usize,
     m: usize,
     n_border: usize,
-    /// Pieces of a row over the controls of a segment, and of a row over the border.
+    /// Pieces of a row over the controls of a segment, and of a row over the border, and how long the latter are.
     control_pieces: usize,
     border_pieces: usize,
+    border_width: usize,
     rho: f64,
     /// Value function's Hessian at every knot.
     value: Vec<SMatrix<f64, NX, NX>>,
-    /// Value function's border columns: a panel of `NX` rows for every knot and piece of the border.
-    columns: Vec<Panel<NX>>,
-    /// Lower factor `L` of one reduced control Hessian after another, row-major, and inverse pivots.
+    /// Value function's border columns: `NX` rows for every knot and piece of the border.
+    columns: Vec<f64>,
+    /// Upper factor `U` of one reduced control Hessian after another (for every piece `m` rows; below the diagonal anything), and
+    /// inverse pivots.
     factor: Vec<f64>,
     inverse_pivot: Vec<f64>,
-    /// Rows of `L^-1 S'`, `m` a segment.
+    /// Rows of `U'^-1 S'`, `m` a segment.
     gain: Vec<SVector<f64, NX>>,
-    /// `L^-1` times border columns: for every segment and piece of the border `m` rows.
-    border_gain: Vec<Lanes>,
+    /// `U'^-1` times border columns: for every segment and piece of the border `m` rows.
+    border_gain: Vec<f64>,
     /// The border's Schur complement: `n_border` rows for every piece; and the factor of its boundary part.
-    border: Vec<Lanes>,
+    border: Vec<f64>,
     border_factor: Vec<f64>,
     start_factor: Vec<f64>,
     start_gain: Vec<f64>,
@@ -70,18 +72,21 @@ pub(crate) struct Riccati<const NX: usize> {
     time_pivot: f64,
     /// Linear term of the value function.
     linear: Vec<SVector<f64, NX>>,
-    /// `L^-1` times the linear term of the controls, `m` a segment.
+    /// `U'^-1` times the linear term of the controls, `m` a segment.
     linear_gain: Vec<f64>,
     start_linear: Vec<f64>,
-    border_rhs: Vec<Lanes>,
+    border_rhs: Vec<f64>,
     solution: Vec<f64>,
     /// Weights of the border columns in a solve.
-    weights: Vec<Lanes>,
-    /// Reduced control Hessian of one segment: for every piece of the controls `m` rows.
-    hessian: Vec<Lanes>,
+    weights: Vec<f64>,
     /// Transposes of the dynamics and, in panels of pieces, of the control columns.
     transposed: Vec<SMatrix<f64, NX, NX>>,
     control_rows: Vec<Panel<NX>>,
+    /// Scratch of one segment: panels of `cross`, `P b + cross`, first terms of the border's columns, first piece of the next ones.
+    cross_rows: Vec<Panel<NX>>,
+    work: Vec<SVector<f64, NX>>,
+    border_start: Vec<f64>,
+    timed_columns: Vec<f64>,
     /// Control of every segment from which on `cross` may be other than zero.
     first_cross: Vec<usize>,
     /// The general factorisation that takes the recursion's place where it is asked for.
@@ -93,9 +98,10 @@ impl<const NX: usize> Riccati<NX> {
     /// Prepares for problems of a given shape; `free_start` lists the components of the start state that are free.
     pub fn resize(&mut self, n: usize, m: usize, n_boundary: usize, free_start: &[usize], free_time: bool) {
         let nb = n_boundary + 1;
-        let (mc, nc) = (pieces(m), pieces(nb));
+        let width = border_width(m, nb);
+        let (mc, nc) = (pieces(m), nb.div_ceil(width));
         (self.n, self.m, self.n_border, self.free_time) = (n, m, nb, free_time);
-        (self.control_pieces, self.border_pieces) = (mc, nc);
+        (self.control_pieces, self.border_pieces, self.border_width) = (mc, nc, width);
         self.value.resize(n + 1, SMatrix::zeros());
         self.gain.resize(n * m, SVector::zeros());
         self.inverse_pivot.resize(n * m, 0.0);
@@ -103,34 +109,42 @@ impl<const NX: usize> Riccati<NX> {
         self.free_start.extend_from_slice(free_start);
         let ns = free_start.len();
         for (v, length) in [
-            (&mut self.factor, n * m * m),
+            (&mut self.factor, n * m * mc * LANES),
             (&mut self.linear_gain, n * m),
             (&mut self.border_factor, (nb - 1) * (nb - 1)),
             (&mut self.start_factor, ns * ns),
             (&mut self.start_gain, ns * nb),
             (&mut self.start_linear, ns),
             (&mut self.solution, nb),
+            (&mut self.columns, (n + 1) * nc * NX * width),
+            (&mut self.border_gain, n * m * nc * width),
+            (&mut self.border, nb * nc * width),
+            (&mut self.border_rhs, nc * width),
+            (&mut self.weights, nc * width),
+            (&mut self.border_start, (m + NX) * width),
+            (&mut self.timed_columns, NX * width),
         ] {
             v.clear();
             v.resize(length, 0.0);
         }
-        for (v, length) in [
-            (&mut self.border_gain, n * m * nc),
-            (&mut self.border, nb * nc),
-            (&mut self.border_rhs, nc),
-            (&mut self.weights, nc),
-            (&mut self.hessian, m * mc),
-        ] {
-            v.clear();
-            v.resize(length, [0.0; LANES]);
-        }
-        for (v, length) in [(&mut self.columns, (n + 1) * nc), (&mut self.control_rows, n * mc)] {
+        for (v, length) in [(&mut self.control_rows, n * mc), (&mut self.cross_rows, mc)] {
             v.clear();
             v.resize(length, [[0.0; LANES]; NX]);
         }
         self.linear.resize(n + 1, SVector::zeros());
         self.transposed.resize(n, SMatrix::zeros());
         self.first_cross.resize(n, m);
+        self.work.resize(m, SVector::zeros());
+    }
+}
+
+/// Length of the pieces of a row over a border of `n` columns: one piece where the kernels are compiled for it, because a number
+/// that multiplies a long row is loaded once.
+fn border_width(m: usize, n: usize) -> usize {
+    match (m, pieces(n)) {
+        (4 | 12, 3) => 12,
+        (4 | 12, 4) => 16,
+        _ => LANES,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::triangular::{backward_scaled, forward_scaled};
 use super::{Riccati, penalty};
-use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch, pieces};
+use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch, panels, pieces, rows, rows_mut};
 use crate::nlp::quadratic::{Quadratic, Rhs, Step};
 use nalgebra::SVector;
 
@@ -19,21 +19,25 @@ impl<const NX: usize> Kernel for Solve<'_, NX> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        match self.riccati.m {
-            4 => self.run_with::<A, 4>(),
-            12 => self.run_with::<A, 12>(),
-            _ => self.run_with::<A, 0>(),
+        match (self.riccati.m, self.riccati.border_width) {
+            (4, 4) => self.run_with::<A, 4, 4, 4>(),
+            (4, 12) => self.run_with::<A, 4, 4, 12>(),
+            (4, 16) => self.run_with::<A, 4, 4, 16>(),
+            (12, 4) => self.run_with::<A, 12, 12, 4>(),
+            (12, 12) => self.run_with::<A, 12, 12, 12>(),
+            (12, 16) => self.run_with::<A, 12, 12, 16>(),
+            _ => self.run_with::<A, 0, 4, 4>(),
         }
     }
 }
 
 impl<const NX: usize> Solve<'_, NX> {
     #[inline(always)]
-    fn run_with<A: Arithmetic, const M: usize>(self) {
-        self.riccati.backward::<A, M>(self.lq, self.state_weight, self.rhs);
+    fn run_with<A: Arithmetic, const M: usize, const C: usize, const W: usize>(self) {
+        self.riccati.backward::<A, M, C, W>(self.lq, self.state_weight, self.rhs);
         self.riccati.solve_border(self.step);
         self.riccati.solve_start(self.step);
-        self.riccati.forward::<A, M>(self.lq, self.rhs, self.step);
+        self.riccati.forward::<A, M, C, W>(self.lq, self.rhs, self.step);
     }
 }
 
@@ -55,7 +59,7 @@ impl<const NX: usize> Riccati<NX> {
     }
 
     #[inline(always)]
-    fn backward<A: Arithmetic, const M: usize>(
+    fn backward<A: Arithmetic, const M: usize, const C: usize, const W: usize>(
         &mut self,
         lq: &Quadratic<NX>,
         state_weight: &SVector<f64, NX>,
@@ -64,38 +68,32 @@ impl<const NX: usize> Riccati<NX> {
         let (n, m, nb) = (self.n, self.controls::<M>(), self.n_border);
         let (mc, nc) = (pieces(m), self.border_pieces);
         let mut linear = rhs.gx[n];
-        self.border_rhs.fill([0.0; LANES]);
-        self.border_rhs[0][0] = rhs.gp;
+        self.border_rhs.fill(0.0);
+        self.border_rhs[0] = rhs.gp;
         for j in 1..nb {
             let rho = penalty(self.rho, lq, state_weight, j - 1);
             linear += lq.ef[j - 1] * (rho * rhs.e[j - 1]);
-            self.border_rhs[0][0] += rho * lq.et[j - 1] * rhs.e[j - 1];
-            self.border_rhs[j / LANES][j % LANES] = rhs.e[j - 1];
+            self.border_rhs[0] += rho * lq.et[j - 1] * rhs.e[j - 1];
+            self.border_rhs[j] = rhs.e[j - 1];
         }
         self.linear[n] = linear;
         for k in (0..n).rev() {
             let c = array(&rhs.c[k]);
             let v = A::mul_vec(&self.value[k + 1], &rhs.c[k]) + self.linear[k + 1];
-            let columns = &self.columns[(k + 1) * nc..(k + 2) * nc];
-            for (sum, panel) in self.border_rhs.iter_mut().zip(columns) {
+            let columns = &panels::<W, NX>(&self.columns)[(k + 1) * nc..(k + 2) * nc];
+            for (sum, panel) in rows_mut::<W>(&mut self.border_rhs).iter_mut().zip(columns) {
                 *sum = A::combine(*sum, c, panel);
             }
-            self.border_rhs[0][0] += A::dot(array(&v), array(&lq.ap[k]));
+            self.border_rhs[0] += A::dot(array(&v), array(&lq.ap[k]));
             let row = &mut self.linear_gain[k * m..(k + 1) * m];
             let panels = &self.control_rows[k * mc..(k + 1) * mc];
-            for ((out, gradient), panel) in
-                row.chunks_mut(LANES).zip(rhs.gu[k * m..(k + 1) * m].chunks(LANES)).zip(panels)
-            {
-                let product = A::combine([0.0; LANES], array(&v), panel);
-                for ((out, gradient), product) in out.iter_mut().zip(gradient).zip(product) {
-                    *out = gradient + product;
-                }
-            }
+            row.copy_from_slice(&rhs.gu[k * m..(k + 1) * m]);
+            A::add_pieces(row, array(&v), panels);
             for i in self.first_cross[k]..m {
                 row[i] += A::dot(array(&lq.cross[k * m + i]), c);
             }
-            let factor = &self.factor[k * m * m..(k + 1) * m * m];
-            forward_scaled::<A>(factor, &self.inverse_pivot[k * m..(k + 1) * m], row);
+            let factor = &rows::<C>(&self.factor)[k * m * (pieces(m) * LANES / C)..];
+            forward_scaled::<A, C>(factor, &self.inverse_pivot[k * m..(k + 1) * m], row);
             let mut own = *array(&rhs.gx[k]);
             for l in 0..NX {
                 A::axpy(&mut own, v[l], &self.transposed[k].data.0[l]);
@@ -104,43 +102,40 @@ impl<const NX: usize> Riccati<NX> {
                 A::axpy(&mut own, -value, array(gain));
             }
             *array_mut(&mut self.linear[k]) = own;
-            let gains = self.border_gain[k * m * nc..(k + 1) * m * nc].chunks_exact(m.max(1));
-            for (sum, rows) in self.border_rhs.iter_mut().zip(gains) {
-                *sum = A::subtract(*sum, row.iter().copied(), rows);
+            let gains = rows::<W>(&self.border_gain)[k * m * nc..(k + 1) * m * nc].chunks_exact(m.max(1));
+            for (sum, gains) in rows_mut::<W>(&mut self.border_rhs).iter_mut().zip(gains) {
+                for (value, gain) in row.iter().zip(gains) {
+                    A::axpy(sum, -value, gain);
+                }
             }
         }
     }
 
     #[inline(always)]
-    fn forward<A: Arithmetic, const M: usize>(
+    fn forward<A: Arithmetic, const M: usize, const C: usize, const W: usize>(
         &mut self,
         lq: &Quadratic<NX>,
         rhs: &Rhs<NX>,
         step: &mut Step<NX>,
     ) {
         let (n, m, nc) = (self.n, self.controls::<M>(), self.border_pieces);
-        self.weights.fill([0.0; LANES]);
-        self.weights[0][0] = if self.free_time { step.dp } else { 0.0 };
-        for (j, weight) in step.boundary.iter().enumerate() {
-            self.weights[(j + 1) / LANES][(j + 1) % LANES] = *weight;
-        }
+        self.weights.fill(0.0);
+        self.weights[0] = if self.free_time { step.dp } else { 0.0 };
+        self.weights[1..self.n_border].copy_from_slice(&step.boundary);
+        let weights = rows::<W>(&self.weights);
         for k in 0..n {
             let dx = step.dx[k];
             let du = &mut step.du[k * m..(k + 1) * m];
             for i in 0..m {
-                let mut sums = [0.0; LANES];
-                for (piece, weights) in self.weights.iter().enumerate() {
-                    let gain = &self.border_gain[(k * nc + piece) * m + i];
-                    for lane in 0..LANES {
-                        sums[lane] = A::madd(gain[lane], weights[lane], sums[lane]);
-                    }
+                let mut border = 0.0;
+                for (piece, weights) in weights.iter().enumerate() {
+                    border += A::dot(&rows::<W>(&self.border_gain)[(k * nc + piece) * m + i], weights);
                 }
-                let border = (sums[0] + sums[2]) + (sums[1] + sums[3]);
                 let own = A::dot(array(&self.gain[k * m + i]), array(&dx));
                 du[i] = -(self.linear_gain[k * m + i] + own + border);
             }
-            let factor = &self.factor[k * m * m..(k + 1) * m * m];
-            backward_scaled::<A>(factor, &self.inverse_pivot[k * m..(k + 1) * m], du);
+            let factor = &rows::<C>(&self.factor)[k * m * (pieces(m) * LANES / C)..];
+            backward_scaled::<A, C>(factor, &self.inverse_pivot[k * m..(k + 1) * m], du);
             let mut next = A::mul_vec(&lq.a[k], &dx) + rhs.c[k] + lq.ap[k] * step.dp;
             for (du, b) in du.iter().zip(&lq.b[k * m..(k + 1) * m]) {
                 A::axpy(array_mut(&mut next), *du, array(b));
@@ -149,15 +144,11 @@ impl<const NX: usize> Riccati<NX> {
             for i in self.first_cross[k]..m {
                 A::axpy(array_mut(&mut costate), du[i], array(&lq.cross[k * m + i]));
             }
-            let columns = &self.columns[(k + 1) * nc..(k + 2) * nc];
-            for x in 0..NX {
-                let mut sums = [0.0; LANES];
-                for (panel, weights) in columns.iter().zip(&self.weights) {
-                    for lane in 0..LANES {
-                        sums[lane] = A::madd(panel[x][lane], weights[lane], sums[lane]);
-                    }
+            let columns = &panels::<W, NX>(&self.columns)[(k + 1) * nc..(k + 2) * nc];
+            for (panel, weights) in columns.iter().zip(weights) {
+                for x in 0..NX {
+                    costate[x] += A::dot(&panel[x], weights);
                 }
-                costate[x] += (sums[0] + sums[2]) + (sums[1] + sums[3]);
             }
             step.costate[k] = costate + A::mul_vec(&self.value[k + 1], &next);
             step.dx[k + 1] = next;

@@ -1,69 +1,71 @@
 //! Small factorisations and triangular solves.
 
 use super::NotConvex;
-use crate::dense::{Arithmetic, LANES, Lanes};
+use crate::dense::Arithmetic;
 
-/// Cholesky factorisation of `m` rows in pieces (`hessian`: for every piece `m` rows, upper triangle used, overwritten) into a
-/// row-major lower factor and its inverse pivots.
+/// Cholesky factorisation `U' U` in place of `m` rows in pieces of `C` (for every piece `m` rows, upper triangle), with inverse pivots.
 #[inline(always)]
-pub(super) fn factorise_pieces<A: Arithmetic>(
-    hessian: &mut [Lanes],
-    m: usize,
-    lower: &mut [f64],
+pub(super) fn factorise_pieces<A: Arithmetic, const C: usize>(
+    upper: &mut [[f64; C]],
     inverse: &mut [f64],
 ) -> Result<(), NotConvex> {
+    let m = inverse.len();
     for k in 0..m {
-        let first = k / LANES;
-        let mut scale = 0.0;
-        for (piece, rows) in hessian.chunks_exact_mut(m).enumerate().skip(first) {
-            let (done, rest) = rows.split_at_mut(k);
-            let mut row = A::subtract(rest[0], lower[k * m..k * m + k].iter().copied(), done);
+        let first = k / C;
+        for piece in first..upper.len() / m {
+            let (done, rest) = upper.split_at_mut(piece * m + k);
+            let mut row = rest[0];
+            for l in 0..k {
+                let weight = done[first * m + l][k % C];
+                A::axpy(&mut row, -weight, &done[piece * m + l]);
+            }
             if piece == first {
-                let (original, pivot) = (rest[0][k % LANES], row[k % LANES]);
+                let (original, pivot) = (rest[0][k % C], row[k % C]);
                 // a pivot that is rounding of the original entry says nothing about the sign
                 if pivot.is_nan() || pivot <= 1e-15 * original.abs() {
                     return Err(NotConvex);
                 }
-                scale = 1.0 / pivot.sqrt();
-                inverse[k] = scale;
+                inverse[k] = 1.0 / pivot.sqrt();
             }
-            row.iter_mut().for_each(|v| *v *= scale);
+            row.iter_mut().for_each(|v| *v *= inverse[k]);
             rest[0] = row;
-            for (lane, value) in row.iter().enumerate() {
-                let i = piece * LANES + lane;
-                if i >= k && i < m {
-                    lower[i * m + k] = *value;
-                }
-            }
         }
     }
     Ok(())
 }
 
-/// Solves `L y = x` in place with the inverse pivots at hand.
+/// Solves `U' y = x` in place with the inverse pivots at hand.
 #[inline(always)]
-pub(super) fn forward_scaled<A: Arithmetic>(lower: &[f64], inverse: &[f64], x: &mut [f64]) {
+pub(super) fn forward_scaled<A: Arithmetic, const C: usize>(
+    upper: &[[f64; C]],
+    inverse: &[f64],
+    x: &mut [f64],
+) {
     let m = x.len();
     for i in 0..m {
         let (done, rest) = x.split_at_mut(i);
         let mut sum = rest[0];
-        for (l, y) in lower[i * m..i * m + i].iter().zip(done) {
-            sum = A::madd(-l, *y, sum);
+        for (row, y) in upper[i / C * m..].iter().zip(done) {
+            sum = A::madd(-row[i % C], *y, sum);
         }
         rest[0] = sum * inverse[i];
     }
 }
 
-/// Solves `L' x = y` in place with the inverse pivots at hand.
+/// Solves `U x = y` in place with the inverse pivots at hand.
 #[inline(always)]
-pub(super) fn backward_scaled<A: Arithmetic>(lower: &[f64], inverse: &[f64], x: &mut [f64]) {
+pub(super) fn backward_scaled<A: Arithmetic, const C: usize>(
+    upper: &[[f64; C]],
+    inverse: &[f64],
+    x: &mut [f64],
+) {
     let m = x.len();
     for i in (0..m).rev() {
         let (rest, done) = x.split_at_mut(i);
         let value = done[0] * inverse[i];
         done[0] = value;
-        for (l, y) in lower[i * m..i * m + i].iter().zip(rest) {
-            *y = A::madd(-l, value, *y);
+        for (row, y) in upper[i / C * m..].iter().zip(rest) {
+            *y = A::madd(-row[i % C], value, *y);
         }
     }
 }
