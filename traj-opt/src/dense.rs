@@ -462,3 +462,56 @@ pub(crate) fn vector<const N: usize>(values: &[f64], offset: usize) -> SVector<f
     out.copy_from_slice(&values[offset..offset + N]);
     SVector::from(out)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Of matrices with columns of the identity, with and without zeros on the diagonal that force exchanges.
+        #[test]
+        fn inverse_times_matrix_is_the_identity(
+            entries in prop::array::uniform5(prop::array::uniform5(-1.0..1.0f64)),
+            idle in prop::array::uniform5(prop::bool::ANY),
+            hollow in prop::bool::ANY,
+        ) {
+            let mut a = Matrix::<5, 5>::from_fn(|i, j| entries[j][i]);
+            for j in 0..5 {
+                if idle[j] {
+                    a.set_column(j, &Matrix::<5, 5>::identity().column(j));
+                } else if hollow {
+                    a[(j, j)] = 0.0;
+                }
+            }
+            prop_assume!(a.determinant().abs() > 1e-2);
+            let inverse = Separate::inverse(&a, &idle).expect("not singular");
+            prop_assert!((mul(&inverse, &a) - Matrix::identity()).amax() < 1e-9);
+            for j in (0..5).filter(|j| idle[*j]) {
+                prop_assert!(inverse.column(j) == Matrix::<5, 5>::identity().column(j));
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_has_no_inverse() {
+        let mut a = Matrix::<3, 3>::identity();
+        a[(1, 1)] = 0.0;
+        assert!(Separate::inverse(&a, &[true, false, true]).is_none());
+    }
+
+    #[test]
+    fn rows_in_pieces_equal_products() {
+        let columns: [SVector<f64, 3>; 6] =
+            std::array::from_fn(|j| SVector::from_fn(|i, _| (7 * i + 3 * j) as f64 - 5.0));
+        let mut panels = [[[0.0; LANES]; 3]; 2];
+        fill_panels(&columns, &mut panels);
+        let x = [1.0, -2.0, 0.5];
+        let mut row = [1.0; 6];
+        Separate::add_pieces(&mut row, &x, &panels);
+        for j in 0..6 {
+            assert_eq!(row[j], 1.0 + dot(&x, array(&columns[j])));
+        }
+        assert_eq!(piece_of(&row, 1), [row[4], row[5], 0.0, 0.0]);
+    }
+}
