@@ -5,10 +5,6 @@ use crate::metric::Metric;
 use rand::Rng;
 use rand::rngs::Xoshiro256PlusPlus;
 
-/// Steps of the random walks that choose the edges of a kick. On 400 to 1000 vertices in equal
-/// time, 20 to 50 steps gave shorter tours than 3 to 10; among 20 to 50 the differences were within the noise of ten seeds.
-const WALK: usize = 30;
-
 /// Walks to find four different vertices.
 const WALKS: usize = 20;
 
@@ -19,20 +15,25 @@ const REACH: usize = 1000;
 const PIECE: usize = 50;
 
 /// A number below `bound`, by a multiplication of high words; the bias of `bound / 2^64` does not matter here.
-fn below(rng: &mut Xoshiro256PlusPlus, bound: usize) -> usize {
+pub(crate) fn below(rng: &mut Xoshiro256PlusPlus, bound: usize) -> usize {
     ((u128::from(rng.next_u64()) * bound as u128) >> 64) as usize
 }
 
 /// The four vertices after which the tour is cut, in its order.
 type Cuts = [u32; 4];
 
-/// Kicks at random; returns the gain, usually negative, with the ends of the changed edges in `touched`.
+/// Kicks near `origin`; returns the gain, usually negative, with the ends of the changed edges in `touched`.
 ///
-/// The edges start where random walks over the neighbours end (Applegate, Cook, Rohe 2003); if these are too far apart
-/// on the tour, at random in a short piece of it.
-pub(crate) fn kick<M: Metric>(search: &mut Search<'_, M>, rng: &mut Xoshiro256PlusPlus) -> f64 {
-    let origin = below(rng, search.tour.len()) as u32;
-    let cuts = cuts_by_walks(search, rng, origin).unwrap_or_else(|| cuts_in_piece(search, rng, origin));
+/// The edges start where random walks of `steps` steps over the neighbours end (Applegate, Cook, Rohe 2003); if these are too
+/// far apart on the tour, at random in a short piece of it.
+pub(crate) fn kick<M: Metric>(
+    search: &mut Search<'_, M>,
+    rng: &mut Xoshiro256PlusPlus,
+    origin: u32,
+    steps: usize,
+) -> f64 {
+    let cuts =
+        cuts_by_walks(search, rng, origin, steps).unwrap_or_else(|| cuts_in_piece(search, rng, origin));
     double_bridge(search, cuts)
 }
 
@@ -40,12 +41,13 @@ fn cuts_by_walks<M: Metric>(
     search: &Search<'_, M>,
     rng: &mut Xoshiro256PlusPlus,
     origin: u32,
+    steps: usize,
 ) -> Option<Cuts> {
     let mut cuts = [origin; 4];
     let mut found = 1;
     for _ in 0..WALKS {
         let mut v = origin;
-        for _ in 0..WALK {
+        for _ in 0..steps {
             let near = search.neighbours.of(v);
             // The joint of a path has no neighbours.
             v = near.get(below(rng, near.len())).map_or(v, |&(_, next)| next);
