@@ -33,6 +33,10 @@ const STOP_GROWING: f64 = 0.01;
 const WHOLE: f64 = 0.02;
 const WHOLE_UP_TO: f64 = 4.0;
 
+/// Strings may be this long even where the routes have fewer targets on average (the source stops at their mean): of 4000
+/// instances of at most eight targets, 1000 iterations then miss the least makespan of one, else of twelve.
+const SHORT: f64 = 4.0;
+
 impl Ruin {
     pub fn new(vehicles: usize) -> Self {
         Self { touched: vec![0; vehicles], round: 0, removed: Vec::new() }
@@ -51,7 +55,7 @@ impl Ruin {
         self.round = self.round.wrapping_add(1);
         let used = state.count.iter().filter(|&&c| c > 0).count();
         let mean_count = state.n as f64 / used.max(1) as f64;
-        let longest = size.longest.min(mean_count);
+        let longest = size.longest.min(mean_count.max(SHORT));
         let most_strings = (4.0 * size.mean / (1.0 + longest) - 1.0).max(0.0);
         let strings = (random.unit() * most_strings + 1.0) as usize;
         let seed = random.below(state.n);
