@@ -93,14 +93,22 @@ impl<'a> Sampler<'a> {
         leg.transition.max_speed.max(self.airs.loiter_speed(leg))
     }
 
-    /// Electrical energy of a vehicle's flight (J).
+    /// Electrical energy of a vehicle's flight (J), by the trapezoidal rule.
     pub(crate) fn energy(&self, vehicle: usize) -> f64 {
         let planned = &self.plan.vehicles[vehicle];
         let steps = (planned.duration() / ENERGY_STEP).ceil().max(1.0);
         let step = planned.duration() / steps;
-        let time = |i: usize| planned.start_time() + i as f64 * step;
-        let motions: Vec<Motion> = (0..=steps as usize).map(|i| self.motion(vehicle, time(i)).0).collect();
-        self.mission.fleet.vehicle.flight_energy(&motions, step)
+        let power = |i: usize| self.power(vehicle, planned.start_time() + i as f64 * step);
+        let powers: Vec<f64> = (0..=steps as usize).map(power).collect();
+        step * powers.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).sum::<f64>()
+    }
+
+    /// Electrical power in the wind of the leg that is being flown (W).
+    fn power(&self, vehicle: usize, time: f64) -> f64 {
+        let planned = &self.plan.vehicles[vehicle];
+        let started = planned.legs.iter().rev().map(|leg| leg.start_time).find(|start| *start <= time);
+        let wind = self.airs.at(started.unwrap_or(time)).mission.environment.air();
+        self.mission.fleet.vehicle.motion_power(&self.motion(vehicle, time).0, &wind)
     }
 
     fn in_leg(
@@ -128,8 +136,8 @@ impl<'a> Sampler<'a> {
 const ENERGY_STEP: f64 = 0.1;
 
 impl Plan {
-    /// Electrical energy of a vehicle's flight (J), by momentum theory ([`Vehicle::power`](quad_dynamics::Vehicle::power)); 0 for a
-    /// spare vehicle.
+    /// Electrical energy of a vehicle's flight (J), by momentum theory ([`Vehicle::power`](quad_dynamics::Vehicle::power)) with the
+    /// velocity against the air; 0 for a spare vehicle.
     ///
     /// `None` if there is no such vehicle, or if `mission` is not the one that was planned.
     #[must_use]

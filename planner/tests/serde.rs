@@ -106,3 +106,11 @@ proptest! {
         prop_assert_eq!(format!("{mission:?}"), format!("{read:?}"));
     }
 }
+
+#[test]
+fn a_misspelt_field_of_the_camera_is_refused() {
+    let mut value = written(&unusual());
+    value["camera"]["camera"]["mount_yav"] = json!(0.1);
+    let refused = serde_json::from_value::<Mission>(value).unwrap_err();
+    assert!(refused.to_string().contains("mount_yav"), "{refused}");
+}

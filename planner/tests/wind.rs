@@ -1,5 +1,6 @@
 //! Missions in a steady wind.
 
+use planner::quad_dynamics::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use planner::quad_dynamics::{self, Vehicle, VehicleParameters};
 use planner::{
     Entries, Error, Mission, Model, Options, Outcome, Pipeline, Plan, Problem, Target, Tolerances, plan,
@@ -101,6 +102,30 @@ fn a_free_entry_in_wind_is_never_worse_than_the_samples_it_starts_from() {
     };
     assert!(first(&free) <= first(&sampled), "{} against {}", first(&free), first(&sampled));
     stands(&free, &mission);
+}
+
+/// The rotors feel the velocity against the air, not that over the ground.
+#[test]
+fn the_energy_of_a_flight_is_that_against_the_air() {
+    let wind = [5.0, -4.0];
+    let mission = small(Model::ThrustRate, wind);
+    let plan = planned(&mission);
+    let step = 0.02;
+    let energy = |wind: [f64; 2]| -> f64 {
+        let sampler = plan.sampler(&mission).unwrap();
+        let power = |sample: planner::Sample| {
+            let [w, x, y, z] = sample.attitude;
+            let attitude = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+            let against = Vector3::from(sample.velocity) - Vector3::new(wind[0], wind[1], 0.0);
+            let body = attitude.inverse_transform_vector(&against);
+            mission.fleet.vehicle.power(sample.collective_thrust, &body)
+        };
+        let powers: Vec<f64> = sampler.samples(0, step).map(power).collect();
+        powers.windows(2).map(|pair| 0.5 * step * (pair[0] + pair[1])).sum()
+    };
+    let planned = plan.energy(&mission, 0).unwrap();
+    assert!((planned / energy(wind) - 1.0).abs() < 0.01, "{planned} against {}", energy(wind));
+    assert!((planned / energy([0.0; 2]) - 1.0).abs() > 0.02, "the wind makes no difference");
 }
 
 #[test]

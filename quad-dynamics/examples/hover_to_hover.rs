@@ -48,6 +48,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     let flight = simulate(&vehicle, &plan, &options, 1).ok_or("empty plan")?;
     println!("flown: {:#?}", flight.tracking);
-    println!("energy: {:.0} J", vehicle.flight_energy(&plan, options.step));
+    println!("energy: {:.0} J", vehicle.flight_energy(&plan, options.step, &Vector3::zeros()));
     Ok(())
 }

@@ -10,6 +10,7 @@ use crate::motion::Motion;
 /// A camera on the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Camera {
     /// Direction of the optical axis from body x to the left, rad.

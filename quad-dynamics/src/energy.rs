@@ -33,18 +33,18 @@ impl Vehicle {
         ideal.max(0.0) / propulsion.efficiency + self.parameters().battery.avionics_power
     }
 
-    /// Electrical power in a motion through still air, W.
+    /// Electrical power in a motion through air that itself moves with `wind` (m/s, world), W.
     #[must_use]
-    pub fn motion_power(&self, motion: &Motion) -> f64 {
-        let air = motion.attitude.inverse_transform_vector(&motion.velocity);
+    pub fn motion_power(&self, motion: &Motion, wind: &Vector3<f64>) -> f64 {
+        let air = motion.attitude.inverse_transform_vector(&(motion.velocity - wind));
         self.power(motion.collective_thrust, &air)
     }
 
-    /// Energy of a flight sampled every `step` seconds, J, by the trapezoidal rule.
+    /// Energy of a flight sampled every `step` seconds through air that moves with `wind` (m/s, world), J, by the trapezoidal rule.
     #[must_use]
-    pub fn flight_energy(&self, motions: &[Motion], step: f64) -> f64 {
-        let pair = |pair: &[Motion]| 0.5 * (self.motion_power(&pair[0]) + self.motion_power(&pair[1]));
-        motions.windows(2).map(pair).sum::<f64>() * step
+    pub fn flight_energy(&self, motions: &[Motion], step: f64, wind: &Vector3<f64>) -> f64 {
+        let power = |motion| self.motion_power(motion, wind);
+        motions.windows(2).map(|pair| 0.5 * (power(&pair[0]) + power(&pair[1]))).sum::<f64>() * step
     }
 
     /// How long the usable part of the battery hovers, s.
@@ -58,7 +58,8 @@ impl Loiter {
     /// Electrical power on the circle, W; constant, since thrust and attitude against the air are.
     #[must_use]
     pub fn power(&self) -> f64 {
-        self.vehicle.motion_power(&self.state(0.0, crate::Direction::CounterClockwise))
+        let still = Vector3::zeros();
+        self.vehicle.motion_power(&self.state(0.0, crate::Direction::CounterClockwise), &still)
     }
 
     /// Energy of the sweep, J.
