@@ -57,9 +57,15 @@ impl<'a> Routing<'a> {
         let solution = match mission.pipeline {
             Pipeline::Paper => {
                 let clusters = mission.fleet.vehicles.min(orbits.len());
-                let options = cluster::KMeansOptions::default().with_seed(mission.seed).with_n_init(RESTARTS);
                 let centres: Vec<[f64; 2]> = orbits.iter().map(|orbit| orbit.circle.centre).collect();
-                let labels = cluster::kmeans(&centres, clusters, &options).map(|found| found.labels)?;
+                let labels = match self.watch.clustering {
+                    Some(clustering) => clustering(&centres, clusters),
+                    None => {
+                        let options = cluster::KMeansOptions::default();
+                        let options = options.with_seed(mission.seed).with_n_init(RESTARTS);
+                        cluster::kmeans(&centres, clusters, &options)?.labels
+                    }
+                };
                 assign(&problem, &labels)?
             }
             Pipeline::Optimised => {

@@ -95,7 +95,7 @@ pub use mission::{
     CameraSettings, Entries, Environment, Fleet, LoiterSettings, Mission, Model, Objective, Pipeline, Target,
     Transcription, TransitionSettings,
 };
-pub use options::{Options, Progress};
+pub use options::{Clustering, Options, Progress};
 pub use plan::{
     Approach, Candidate, Certificate, Circle, Entry, Leg, Loiter, Miss, Outcome, Phase, Plan, Sample,
     SolverStatus, Transition, VehiclePlan, Warning,

@@ -19,10 +19,16 @@ pub struct Options<'a> {
     /// Iterations of the search for routes, each about a microsecond; `None` for 1000 for each circle. More of them give better routes
     /// and never worse ones; the paper's pipeline does not search.
     pub search_iterations: Option<u64>,
+    /// The clustering of [`Pipeline::Paper`](crate::Pipeline::Paper), `None` for k-means: from the circles' centres (m: east, north) and
+    /// the number of clusters (at most as many as circles, at most one for each vehicle) to a cluster for every circle.
+    pub clustering: Option<Clustering<'a>>,
     /// Iterations after which the solve of one transition is given up and counts as failed; `None` for the solver's own limit. Most
     /// transitions take 15 to 60.
     pub solver_iterations: Option<usize>,
 }
+
+/// From points and a number of clusters to the cluster, from 0, of every point.
+pub type Clustering<'a> = &'a (dyn Fn(&[[f64; 2]], usize) -> Vec<usize> + Sync);
 
 /// How far planning has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +58,13 @@ impl<'a> Options<'a> {
     #[must_use]
     pub fn with_search_iterations(mut self, iterations: u64) -> Self {
         self.search_iterations = Some(iterations);
+        self
+    }
+
+    /// Sets the clustering of the paper's pipeline.
+    #[must_use]
+    pub fn with_clustering(mut self, clustering: Clustering<'a>) -> Self {
+        self.clustering = Some(clustering);
         self
     }
 
