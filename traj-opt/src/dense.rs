@@ -138,31 +138,6 @@ pub(crate) fn fill_panels<const N: usize>(columns: &[SVector<f64, N>], panels: &
     }
 }
 
-/// Columns of a matrix that are not zero.
-pub(crate) struct Used<const N: usize> {
-    index: [usize; N],
-    count: usize,
-}
-
-impl<const N: usize> Used<N> {
-    #[inline(always)]
-    pub fn columns_of<const R: usize>(a: &Matrix<R, N>) -> Self {
-        let mut used = Self { index: [0; N], count: 0 };
-        for k in 0..N {
-            if !is_zero(&a.data.0[k]) {
-                used.index[used.count] = k;
-                used.count += 1;
-            }
-        }
-        used
-    }
-
-    #[inline(always)]
-    fn indices(&self) -> &[usize] {
-        &self.index[..self.count]
-    }
-}
-
 /// Which columns of a matrix are zero.
 #[inline(always)]
 pub(crate) fn zero_columns<const R: usize, const N: usize>(a: &Matrix<R, N>) -> [bool; N] {
@@ -233,24 +208,6 @@ pub(crate) trait Arithmetic {
         for j in 0..C {
             let mut column = [0.0; R];
             for k in 0..K {
-                Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
-            }
-            out.data.0[j] = column;
-        }
-        out
-    }
-
-    /// `a b` over some columns of `a`.
-    #[inline(always)]
-    fn mul_used<const R: usize, const K: usize, const C: usize>(
-        a: &Matrix<R, K>,
-        b: &Matrix<K, C>,
-        used: &Used<K>,
-    ) -> Matrix<R, C> {
-        let mut out = Matrix::<R, C>::zeros();
-        for j in 0..C {
-            let mut column = [0.0; R];
-            for &k in used.indices() {
                 Self::axpy(&mut column, b.data.0[j][k], &a.data.0[k]);
             }
             out.data.0[j] = column;
@@ -406,15 +363,6 @@ pub(crate) fn mul<const R: usize, const K: usize, const C: usize>(
     Separate::mul(a, b)
 }
 
-/// `a b` for an `a` of which some columns are zero.
-#[inline(always)]
-pub(crate) fn mul_thin<const R: usize, const K: usize, const C: usize>(
-    a: &Matrix<R, K>,
-    b: &Matrix<K, C>,
-) -> Matrix<R, C> {
-    Separate::mul_used(a, b, &Used::columns_of(a))
-}
-
 /// `a x`.
 #[inline(always)]
 pub(crate) fn mul_vec<const R: usize, const K: usize>(
@@ -435,15 +383,6 @@ pub(crate) fn tr_mul_vec<const R: usize, const K: usize>(
         out[i] = dot(&a.data.0[i], array(x));
     }
     SVector::from(out)
-}
-
-/// `a' b`.
-#[inline(always)]
-pub(crate) fn tr_mul<const R: usize, const K: usize, const C: usize>(
-    a: &Matrix<K, R>,
-    b: &Matrix<K, C>,
-) -> Matrix<R, C> {
-    mul(&a.transpose(), b)
 }
 
 /// `m += a x x'`.

@@ -72,6 +72,18 @@ pub struct Jacobian<const NX: usize, const NU: usize> {
     pub time: SVector<f64, NX>,
 }
 
+impl<const NX: usize, const NU: usize> Jacobian<NX, NU> {
+    /// Value and all first derivatives zero.
+    pub(crate) fn zeros() -> Self {
+        Self {
+            value: SVector::zeros(),
+            state: SMatrix::zeros(),
+            control: SMatrix::zeros(),
+            time: SVector::zeros(),
+        }
+    }
+}
+
 /// Second derivatives of a scalar function of `(t, x, u)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hessian<const NX: usize, const NU: usize> {

@@ -93,6 +93,7 @@ pub(crate) struct Scratch<const NX: usize, const NU: usize> {
     pub ut: Vec<HyperDualSVec64<NU, 1>>,
     pub tt: Vec<HyperDual64>,
     pub stages: Vec<runge_kutta::Stage<NX, NU>>,
+    pub sensitivity: runge_kutta::Sensitivity<NX, NU>,
 }
 
 impl<const NX: usize, const NU: usize> Scratch<NX, NU> {
@@ -282,7 +283,7 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Program<'_, NX, NU, P
         for k in 0..layout.n_segments {
             match self.transcription {
                 Transcription::RungeKutta { substeps } => {
-                    runge_kutta::linearise(self, layout, substeps, k, w, duals, scratch, out);
+                    runge_kutta::linearise::<A, NX, NU, P>(self, layout, substeps, k, w, duals, scratch, out);
                 }
                 Transcription::Trapezoidal => trapezoidal::linearise(self, layout, k, w, duals, second, out),
                 Transcription::HermiteSimpson | Transcription::CompressedHermiteSimpson => {

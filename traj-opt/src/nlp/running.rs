@@ -68,6 +68,8 @@ fn running_gradient<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     x: &SVector<f64, NX>,
     u: &SVector<f64, NU>,
 ) -> Option<Running<NX, NU>> {
+    // without a running cost no dual number is even made
+    problem.lagrange(t, x, u)?;
     let by_x = problem.lagrange(DualSVec64::from_re(t), &seed(x), &constant::<NU, NX>(u))?;
     let by_u = problem.lagrange(DualSVec64::from_re(t), &constant::<NX, NU>(x), &seed(u))?;
     let by_t = problem.lagrange(
@@ -100,6 +102,7 @@ fn add_running_hessian<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     weight: f64,
     out: &mut Hessian<NX, NU>,
 ) -> Option<()> {
+    problem.lagrange(t, x, u)?;
     let xx = problem.lagrange(Dual2SVec64::from_re(t), &seed2(x), &constant2::<NU, NX>(u))?;
     let uu = problem.lagrange(Dual2SVec64::from_re(t), &constant2::<NX, NU>(x), &seed2(u))?;
     let xu =
