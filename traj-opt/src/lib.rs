@@ -119,6 +119,8 @@ mod autodiff;
 mod batch;
 mod bounds;
 mod check;
+#[cfg(feature = "clarabel")]
+mod convexify;
 mod dense;
 mod dynamics;
 mod error;
@@ -144,6 +146,8 @@ pub use nalgebra;
 pub use batch::solve_batch;
 pub use bounds::Bounds;
 pub use check::{check_derivatives, check_path_derivatives};
+#[cfg(feature = "clarabel")]
+pub use convexify::{Affine, Cone, Conic, ConicOptions, solve_conic, solve_conic_with};
 pub use dynamics::{Dynamics, Hessian, Jacobian};
 pub use error::{BoundKind, Error};
 pub use guess::Guess;

@@ -53,6 +53,9 @@ pub struct Multipliers<const NX: usize, const NU: usize> {
     pub controls: [Vec<SVector<f64, NU>>; 2],
     /// Of the lower and upper bound on the final time; not negative.
     pub final_time: [f64; 2],
+    /// Of the second-order cones of `solve_conic`: for every collocation point and cone that of the radius, then those of the rows. They
+    /// lie in the dual cone: the first is at least the norm of the others. Empty for the other solvers.
+    pub cones: Vec<f64>,
 }
 
 impl<const NX: usize, const NU: usize> Solution<NX, NU> {

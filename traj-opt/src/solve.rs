@@ -133,7 +133,7 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
 }
 
 /// Builds the solution from the last iterate.
-fn extract<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+pub(crate) fn extract<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     program: &Program<NX, NU, P>,
     memory: &Memory<NX, NU>,
     outcome: &Outcome,
@@ -175,6 +175,7 @@ fn multipliers<const NX: usize, const NU: usize>(
         controls: sides
             .map(|z| (0..n * n_local).map(|i| vector(z, layout.control(i / n_local, i % n_local))).collect()),
         final_time: sides.map(|z| z[layout.time]),
+        cones: vec![],
     }
 }
 

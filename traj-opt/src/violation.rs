@@ -26,6 +26,8 @@ pub enum ConstraintKind {
     Linkage,
     /// The duration of a phase.
     Duration,
+    /// A second-order cone.
+    Cone,
 }
 
 impl std::fmt::Display for ConstraintKind {
@@ -39,6 +41,7 @@ impl std::fmt::Display for ConstraintKind {
             Self::TerminalState => "terminal value of state",
             Self::Linkage => "linkage constraint",
             Self::Duration => "duration",
+            Self::Cone => "cone",
         })
     }
 }
@@ -82,7 +85,7 @@ impl std::fmt::Display for Violation {
 }
 
 impl Violation {
-    fn at(location: Location, amount: f64) -> Self {
+    pub(crate) fn at(location: Location, amount: f64) -> Self {
         let Location { kind, index, phase, time } = location;
         Self { kind, index, phase, time, amount }
     }
