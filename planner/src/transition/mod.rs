@@ -5,9 +5,11 @@
 //! | what a model must tell | `flight.rs`, for each model in `models.rs` |
 //! | the optimal control problem | `problem.rs` |
 //! | first trajectories | `guess.rs` |
+//! | long flights, sketched without their middle | `cruise.rs` |
 //! | solving, and solving again with what was overstepped put farther away | `solve.rs` |
 //! | looking at the result between the knots, without the solver | `examine.rs` |
 
+mod cruise;
 mod examine;
 mod flight;
 mod guess;
@@ -115,7 +117,7 @@ impl Pilot {
         (detail, to_beat): (Detail, f64),
     ) -> Result<Draft, Unsolved> {
         let surroundings = self.surroundings();
-        with_flight!(&self.airframe, flight => solve::draft(flight, start, goal, towards, hint, &surroundings, (detail, to_beat)))
+        with_flight!(&self.airframe, flight => cruise::draft(flight, start, goal, towards, hint, &surroundings, (detail, to_beat)))
     }
 
     /// The transition of a draft as it can be flown.

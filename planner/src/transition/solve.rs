@@ -23,6 +23,8 @@ const MOST_ROUNDS: usize = 16;
 const TOLERANCE: f64 = 3e-6;
 /// First barrier parameter: the guesses meet both ends, and this takes half as many iterations as the solver's own 0.1.
 const FIRST_MU: f64 = 0.01;
+/// The same of a sketch that starts from a neighbour's trajectory: 14 iterations instead of 17. Drafts gain nothing by it.
+const NEIGHBOURS_MU: f64 = 1e-3;
 /// Longest Runge-Kutta step of a first solve (s). Segments are short where the attitude turns, so that even the longest flights
 /// take as long as with fine steps to 2e-4 of their time: enough to see that a candidate loses.
 const LONGEST_FIRST_STEP: f64 = 1.0;
@@ -32,8 +34,8 @@ const SKETCH_SHARE: f64 = 0.35;
 const LONGEST_SKETCH_STEP: f64 = 2.0;
 /// The least segments of a sketch.
 const LEAST_SEGMENTS: usize = 10;
-/// The same of a transition that is flown (s): at 6 rad/s its error in attitude is about 2e-4 rad.
-const LONGEST_STEP: f64 = 0.16;
+/// By how much a step is shorter than what the miss of the one before asks for.
+const SAFETY: f64 = 1.2;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
 
@@ -131,6 +133,8 @@ pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     let about = match hint {
         Hint::Time(about) => about,
         Hint::Neighbour(neighbour) => {
+            let first_mu = if detail == Detail::Sketch { NEIGHBOURS_MU } else { FIRST_MU };
+            let attempt = Attempt { first_mu, ..attempt };
             if let Some(first) = bent(flight, neighbour, towards)
                 && let Ok(solved) = attempt.keep_clear(first, attempt.near(towards))
             {
@@ -198,6 +202,7 @@ struct Attempt<'a, F> {
     to_beat: f64,
     segments: usize,
     longest_step: f64,
+    first_mu: f64,
 }
 
 impl<'a, F> Attempt<'a, F> {
@@ -216,7 +221,7 @@ impl<'a, F> Attempt<'a, F> {
                 ((SKETCH_SHARE * all as f64).round().max(LEAST_SEGMENTS as f64) as usize, LONGEST_SKETCH_STEP)
             }
         };
-        Self { flight, start, goal, surroundings, to_beat, segments, longest_step }
+        Self { flight, start, goal, surroundings, to_beat, segments, longest_step, first_mu: FIRST_MU }
     }
 
     /// The keep-outs that a sensible flight may touch: those near the straight line. One that is entered all the same is
@@ -336,7 +341,7 @@ impl<'a, F> Attempt<'a, F> {
             again = true;
         }
         if !within(&transition.miss, &GOOD_MISS) {
-            setting.longest_step = LONGEST_STEP.min(0.5 * setting.longest_step);
+            setting.longest_step = finer_step(transition, setting);
             again = true;
         }
         again
@@ -353,7 +358,7 @@ impl<'a, F> Attempt<'a, F> {
         let Setting { ref keep_outs, heights, longest_step, segments } = *setting;
         let problem =
             MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
-        let mut options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
+        let mut options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(self.first_mu);
         options.max_iterations = self.surroundings.most_iterations.unwrap_or(options.max_iterations);
         let workspace = &mut Workspace::new();
         let watch = |iteration: &Iteration| self.watch(iteration, segments);
@@ -431,6 +436,17 @@ fn unsolved<const NX: usize, const NU: usize>(solution: &Solution<NX, NU>) -> Un
 /// Runge-Kutta steps a segment, where segments last `uniform` (s) on average; the longest about half as long again.
 fn substeps(uniform: f64, longest_step: f64) -> usize {
     (1.5 * uniform / longest_step).ceil().clamp(1.0, 64.0) as usize
+}
+
+/// The longest Runge-Kutta step (s) with which the integrated controls should lead where they must: the miss falls with the fourth
+/// power of the step. At least one step more for each segment.
+fn finer_step(transition: &Transition, setting: &Setting) -> f64 {
+    let uniform = transition.duration / setting.segments as f64;
+    let step = 1.5 * uniform / substeps(uniform, setting.longest_step) as f64;
+    let Miss { position, velocity, attitude } = transition.miss;
+    let excess =
+        (position / GOOD_MISS.position).max(velocity / GOOD_MISS.velocity).max(attitude / GOOD_MISS.attitude);
+    step / (SAFETY * excess.max(1.0).powf(0.25))
 }
 
 /// The solution as it stands in the plan, without what only an examination can tell.
