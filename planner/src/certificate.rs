@@ -56,9 +56,6 @@ impl Metric for LeastTimes<'_> {
 }
 
 /// Least leg times and loiter times in a steady wind, with the potential added to the legs.
-///
-/// Where that would leave a leg less than nothing, a part `delta` of every loiter's time is counted with the legs that lead to and
-/// from it, half with each: no route notices. Without a `delta` that would do there is no potential.
 fn in_wind(orbits: &[Orbit], pads: &[[f64; 3]], envelope: &Envelope) -> (LegTimes, Vec<f64>) {
     let fastest = orbits.iter().map(|orbit| orbit.circle.speed).fold(0.0, f64::max);
     let [between, leaving, landing] =
@@ -69,9 +66,6 @@ fn in_wind(orbits: &[Orbit], pads: &[[f64; 3]], envelope: &Envelope) -> (LegTime
             Some(circle) => vec![(circle.centre.into(), circle.radius)],
         }
     };
-    let wind = envelope.wind();
-    let squares = envelope.level_flight()[1].powi(2) - wind.norm_squared();
-    let potential = if squares > 0.0 { wind / squares } else { Vector2::zeros() };
     let legs = |potential: Vector2<f64>| {
         LegTimes::new(orbits.len() + 1, |i, j| {
             let drift = if i == 0 {
@@ -87,15 +81,38 @@ fn in_wind(orbits: &[Orbit], pads: &[[f64; 3]], envelope: &Envelope) -> (LegTime
             times.reduce(f64::min).unwrap_or(0.0)
         })
     };
-    let service = std::iter::once(0.0).chain(orbits.iter().map(|orbit| orbit.circle.duration));
-    let shares = |i: usize, j: usize| 0.5 * (f64::from(u8::from(i > 0)) + f64::from(u8::from(j > 0)));
+    let service = std::iter::once(0.0).chain(orbits.iter().map(|orbit| orbit.circle.duration)).collect();
+    let (legs, service, _) = levelled(envelope, legs, service);
+    (legs, service)
+}
+
+/// Leg times to which the potential along the wind has been added, loiter times by node (0 for depots), and the potential (s/m).
+///
+/// Where that would leave a leg less than nothing, a part `delta` of every loiter's time is counted with the legs that lead to and
+/// from it, half with each: no route notices. Without a `delta` that would do there is no potential.
+pub(crate) fn levelled(
+    envelope: &Envelope,
+    legs: impl Fn(Vector2<f64>) -> LegTimes,
+    service: Vec<f64>,
+) -> (LegTimes, Vec<f64>, Vector2<f64>) {
+    let wind = envelope.wind();
+    let squares = envelope.level_flight()[1].powi(2) - wind.norm_squared();
+    if wind == Vector2::zeros() || squares <= 0.0 {
+        return (legs(Vector2::zeros()), service, Vector2::zeros());
+    }
+    let potential = wind / squares;
+    let shares = |i: usize, j: usize| {
+        0.5 * (f64::from(u8::from(service[i] > 0.0)) + f64::from(u8::from(service[j] > 0.0)))
+    };
     let shifted = legs(potential);
-    let delta = shifted.pairs().map(|(i, j, time)| -time / shares(i, j)).fold(0.0, f64::max);
-    if delta > orbits.iter().map(|orbit| orbit.circle.duration).fold(f64::INFINITY, f64::min) {
-        return (legs(Vector2::zeros()), service.collect());
+    let visited = shifted.pairs().filter(|&(i, j, _)| shares(i, j) > 0.0);
+    let delta = visited.map(|(i, j, time)| -time / shares(i, j)).fold(0.0, f64::max);
+    if delta >= service.iter().copied().filter(|time| *time > 0.0).fold(f64::INFINITY, f64::min) {
+        return (legs(Vector2::zeros()), service, Vector2::zeros());
     }
     let times = shifted.map(|i, j, time| (time + delta * shares(i, j)).max(0.0));
-    (times, service.enumerate().map(|(node, time)| if node == 0 { 0.0 } else { time - delta }).collect())
+    let service = service.into_iter().map(|time| if time > 0.0 { time - delta } else { 0.0 }).collect();
+    (times, service, potential)
 }
 
 /// The certificate of a finished plan.

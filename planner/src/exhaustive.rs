@@ -10,10 +10,12 @@ use crate::planning::plan;
 use quad_dynamics::{Motion, Vehicle, VehicleParameters};
 
 /// Times of all legs (s), infinite where the solver finds none.
-struct Times {
+pub(crate) struct Times {
     n_entries: usize,
     loiters: Vec<f64>,
-    /// By pad, circle and entry.
+    /// Straight home with nothing circled, by vehicle; 0 for one on its pad.
+    idle: Vec<f64>,
+    /// By vehicle, circle and entry.
     out: Vec<Vec<Vec<f64>>>,
     home: Vec<Vec<Vec<f64>>>,
     /// By circle and entry, and by the next circle and entry.
@@ -24,53 +26,61 @@ impl Times {
     fn of(mission: &Mission) -> Self {
         let pads = mission.pads();
         let airs = Airs::new(&plan(mission, &Options::default()).unwrap(), mission);
-        let air = airs.at(0.0);
-        let airspace = Airspace::of(air);
-        let entries = entry::sampled(mission.transition.entries);
-        let circles = 0..air.orbits.len();
+        let airspace = Airspace::of(airs.at(0.0));
+        let circles: Vec<usize> = (0..airspace.orbits.len()).collect();
+        Self::from(&airspace, &circles, &pads.iter().map(|&pad| (None, pad)).collect::<Vec<_>>())
+    }
+
+    /// Of vehicles that go on from a motion, or on their pads, round some circles.
+    pub(crate) fn from(
+        airspace: &Airspace,
+        circles: &[usize],
+        vehicles: &[(Option<Motion>, [f64; 3])],
+    ) -> Self {
+        let entries = entry::sampled(airspace.mission.transition.entries);
         let to = |here: &Motion, circle: usize, entry: Entry| {
-            let (transition, found, _) = airspace.reach(here, &air.orbits[circle], entry);
+            let (transition, found, _) = airspace.reach(here, &airspace.orbits[circle], entry);
             transition.filter(|_| found == entry).map_or(f64::INFINITY, |transition| transition.duration)
         };
         let to_all = |here: &Motion, circle: usize| -> Vec<f64> {
             entries.iter().map(|&entry| to(here, circle, entry)).collect()
         };
-        let exit = |circle: usize, entry: Entry| air.orbits[circle].exit(entry);
-        let back = |pad: [f64; 3], circle: usize, entry: Entry| {
-            airspace
-                .to_pad(&exit(circle, entry), pad)
-                .0
-                .map_or(f64::INFINITY, |transition| transition.duration)
+        let exit = |circle: usize, entry: Entry| airspace.orbits[circle].exit(entry);
+        let back = |here: &Motion, pad: [f64; 3]| {
+            airspace.to_pad(here, pad).0.map_or(f64::INFINITY, |transition| transition.duration)
         };
         let onwards = |circle: usize, entry: Entry| {
-            let next = |next: usize| match next == circle {
+            let next = |&next: &usize| match next == circle {
                 true => Vec::new(),
                 false => to_all(&exit(circle, entry), next),
             };
-            circles.clone().map(next).collect()
+            circles.iter().map(next).collect()
         };
-        let out = |&pad: &[f64; 3]| {
-            circles.clone().map(|circle| to_all(&airspace.take_off(pad, &[circle]), circle)).collect()
+        let out = |&(here, pad): &(Option<Motion>, [f64; 3])| {
+            let from = |circle: usize| here.unwrap_or_else(|| airspace.take_off(pad, &[circle]));
+            circles.iter().map(|&circle| to_all(&from(circle), circle)).collect()
         };
-        let home = |&pad: &[f64; 3]| {
-            let from = |circle| entries.iter().map(|&entry| back(pad, circle, entry)).collect();
-            circles.clone().map(from).collect()
+        let home = |&(_, pad): &(Option<Motion>, [f64; 3])| {
+            let from =
+                |&circle: &usize| entries.iter().map(|&entry| back(&exit(circle, entry), pad)).collect();
+            circles.iter().map(from).collect()
         };
         Self {
             n_entries: entries.len(),
-            loiters: air.orbits.iter().map(|orbit| orbit.circle.duration).collect(),
-            out: pads.iter().map(out).collect(),
-            home: pads.iter().map(home).collect(),
+            loiters: circles.iter().map(|&circle| airspace.orbits[circle].circle.duration).collect(),
+            idle: vehicles.iter().map(|(here, pad)| here.map_or(0.0, |here| back(&here, *pad))).collect(),
+            out: vehicles.iter().map(out).collect(),
+            home: vehicles.iter().map(home).collect(),
             between: circles
-                .clone()
-                .map(|circle| entries.iter().map(|&entry| onwards(circle, entry)).collect())
+                .iter()
+                .map(|&circle| entries.iter().map(|&entry| onwards(circle, entry)).collect())
                 .collect(),
         }
     }
 
     /// The least time of a route over all entries (s).
     fn route(&self, vehicle: usize, route: &[usize]) -> f64 {
-        let Some((&first, rest)) = route.split_first() else { return 0.0 };
+        let Some((&first, rest)) = route.split_first() else { return self.idle[vehicle] };
         let from = |entry: usize| self.out[vehicle][first][entry] + self.rest(vehicle, (first, entry), rest);
         (0..self.n_entries).map(from).fold(f64::INFINITY, f64::min)
     }
@@ -88,15 +98,18 @@ impl Times {
         self.loiters[circle] + then
     }
 
-    /// The least makespan and the least total over all splits and orders for one or two vehicles (s).
-    fn best(&self) -> [f64; 2] {
+    /// The least makespan and the least total over all splits and orders for one or two vehicles that begin at given times (s).
+    pub(crate) fn best(&self, begin: &[f64]) -> [f64; 2] {
         let mut best = [f64::INFINITY; 2];
+        let end = |vehicle: usize, time: f64| if time > 0.0 { begin[vehicle] + time } else { 0.0 };
         for order in orders(self.loiters.len()) {
             let cuts = if self.out.len() == 1 { order.len()..=order.len() } else { 0..=order.len() };
             for cut in cuts {
                 let first = self.route(0, &order[..cut]);
-                let second = if cut < order.len() { self.route(1, &order[cut..]) } else { 0.0 };
-                best = [best[0].min(first.max(second)), best[1].min(first + second)];
+                let second = if self.out.len() > 1 { self.route(1, &order[cut..]) } else { 0.0 };
+                let makespan =
+                    if self.out.len() > 1 { end(0, first).max(end(1, second)) } else { end(0, first) };
+                best = [best[0].min(makespan), best[1].min(first + second)];
             }
         }
         best
@@ -137,7 +150,7 @@ fn no_plan_of_a_small_mission_beats_the_certificate_and_no_plan_beats_them_all()
         mission.transition.segments = 20;
         mission.transition.entries = Entries::Sampled(n_entries);
         mission.environment.wind = wind;
-        let [makespan, total] = Times::of(&mission).best();
+        let [makespan, total] = Times::of(&mission).best(&vec![0.0; n_vehicles]);
         assert!(makespan.is_finite() && total.is_finite());
         for objective in [Objective::Makespan, Objective::Total] {
             mission.objective = objective;

@@ -39,12 +39,11 @@
 //! - Candidate entries are compared on coarse meshes first, and some are left out on an estimate ([`Outcome::Slower`]), others on a
 //!   proven bound ([`Outcome::ProvenWorse`]). Each is recorded as what it is, and [`Options::exhaustive`] solves all to the end.
 //! - The certificate's lower bounds hold over every allocation, order, entry, direction and admissible motion; a test holds them against
-//!   all plans of small missions (`exhaustive.rs`).
+//!   all plans of small missions (`exhaustive.rs`). After events in flight they hold over every continuation from that moment on.
 //! - The same mission and seed give the same plan to the bit, with or without the feature `rayon`, on any number of threads.
 //!
 //! What is *not* guaranteed: that a transition is the global optimum of its problem (the solver finds local ones from several
-//! guesses), or that clustering first gives routes within a factor of the best (it has none; see [`Certificate`]). A
-//! plan that a [`Replanner`] has changed carries no lower bounds: they are 0.
+//! guesses), or that clustering first gives routes within a factor of the best (it has none; see [`Certificate`]).
 //!
 //! # Features
 //! `rayon`: routes and candidate entries are solved side by side. `serde`: [`Mission`] as data.

@@ -200,7 +200,9 @@ pub enum Outcome {
     },
 }
 
-/// Values found beside lower bounds that hold over every allocation, order, entry, direction and admissible motion.
+/// Values found beside lower bounds that hold over every allocation, order, entry, direction and admissible motion; in a plan that a
+/// [`Replanner`](crate::Replanner) has changed, over all of those with which its flights can go on from the last event: what has been
+/// flown, or is being flown to its end, stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
     /// Time until the last vehicle is back (s), waiting included.

@@ -21,7 +21,9 @@ const RANGE: [f64; 2] = [0.5, 2000.0];
 /// Least times from one speed over the ground to another, whatever the directions of both.
 #[derive(Debug, Clone)]
 pub(crate) struct Drift {
+    /// One for all directions in still air.
     tables: Vec<(Vector2<f64>, Table)>,
+    is_calm: bool,
 }
 
 /// An increasing, concave function of the distance by its values at some, linear in between and beyond.
@@ -43,16 +45,21 @@ fn distance(index: usize) -> f64 {
 impl Drift {
     /// For motions that start no faster than `from` and end no faster than `to` (m/s over the ground, not negative).
     pub(crate) fn new(envelope: &Envelope, from: f64, to: f64) -> Self {
-        let directions = (0..DIRECTIONS).map(|i| i as f64 / DIRECTIONS as f64 * std::f64::consts::TAU);
+        let is_calm = envelope.wind() == Vector2::zeros();
+        let n_directions = if is_calm { 1 } else { DIRECTIONS };
+        let directions = (0..n_directions).map(|i| i as f64 / DIRECTIONS as f64 * std::f64::consts::TAU);
         let tables = directions
             .map(|angle| Vector2::new(angle.cos(), angle.sin()))
             .filter_map(|n| Some((n, Table::new(envelope, n, from, to)?)))
             .collect();
-        Self { tables }
+        Self { tables, is_calm }
     }
 
     /// No admissible motion over an offset (m: east, north), less `slack` (m) in any direction, takes less (s).
     pub(crate) fn least_time(&self, offset: Vector2<f64>, slack: f64) -> f64 {
+        if self.is_calm {
+            return self.tables.iter().map(|(_, table)| table.at(offset.norm() - slack)).fold(0.0, f64::max);
+        }
         self.tables.iter().map(|(n, table)| table.at(offset.dot(n) - slack)).fold(0.0, f64::max)
     }
 }

@@ -5,11 +5,15 @@
 //! | what of a flight is settled at a moment, and where it can still be changed | `settled.rs` |
 //! | who takes a target over, and where in its route | `insertion.rs` |
 //! | the legs of a changed route: those that stay are kept, the others solved | `refly.rs` |
+//! | lower bounds over every continuation | `outlook.rs` |
 //! | vehicles that would come too close wait for each other | `give_way.rs` |
 //! | the winds that flights meet | `skies.rs` |
 
+#[cfg(test)]
+mod continuations;
 mod give_way;
 mod insertion;
+mod outlook;
 mod refly;
 mod settled;
 mod skies;
@@ -21,8 +25,10 @@ use crate::mission::{Mission, Target};
 use crate::plan::{Approach, Plan};
 use crate::planning::{calibrated, for_all};
 use crate::time_model::TimeModel;
+use outlook::{Outlook, Ways};
 use settled::Settled;
 use skies::Skies;
+use std::sync::Arc;
 
 /// Something that happens while the team flies. Targets and vehicles are numbered from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +76,8 @@ pub struct Replanner {
     model: TimeModel,
     usable: Vec<bool>,
     waiting: Vec<usize>,
+    /// Least times of legs as the last event needed them.
+    ways: Option<Arc<Ways>>,
 }
 
 impl Replanner {
@@ -95,7 +103,7 @@ impl Replanner {
             let flown = plan.vehicles.iter();
             calibrated(airspace, flown.map(|flown| (flown.pad, &flown.route[..], &flown.legs[..])))
         };
-        Ok(Self { mission, plan, model, usable, waiting: Vec::new() })
+        Ok(Self { mission, plan, model, usable, waiting: Vec::new(), ways: None })
     }
 
     /// The plan as it stands.
@@ -233,6 +241,8 @@ impl Replanner {
         if let Some(vehicle) = changes.relieved_by {
             insertion::relieve(airspace, &self.model, &self.plan, &mut team, vehicle);
         }
+        let ways = Ways::of(airspace, &team, self.ways.as_ref());
+        let bounds = Outlook::new(&ways, airspace, &self.plan, (&team, &self.usable), time).bounds();
         self.plan.circles = airspace.orbits.iter().map(|orbit| orbit.circle.clone()).collect();
         let legs = for_all(team.into_iter().enumerate().collect(), |(vehicle, settled)| {
             let planned = &self.plan.vehicles[vehicle];
@@ -269,9 +279,9 @@ impl Replanner {
         let flown = || self.plan.vehicles.iter();
         self.plan.certificate.makespan = flown().map(|vehicle| vehicle.end_time()).fold(0.0, f64::max);
         self.plan.certificate.total = flown().map(|vehicle| vehicle.duration()).sum();
-        // The bounds were those of another mission.
-        self.plan.certificate.makespan_lower_bound = 0.0;
-        self.plan.certificate.total_lower_bound = 0.0;
+        self.plan.certificate.makespan_lower_bound = bounds.makespan;
+        self.plan.certificate.total_lower_bound = bounds.total_cost;
+        self.ways = Some(ways);
         Ok(Update { vehicles, waiting, conflict })
     }
 }
