@@ -1,25 +1,16 @@
 //! Christofides' algorithm and its parts. Quality is printed beside time.
 
+use benches::{SEED, uniform};
 use christofides::matching::Solver;
 use christofides::{Points, chained_improve, christofides, exact_tour, held_karp};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
-/// Points in the unit square by a linear congruence, the same for ever.
-fn uniform(n: usize) -> Vec<[f64; 2]> {
-    let mut state = 0x2545_f491_4f6c_dd1d_u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..n).map(|_| [next(), next()]).collect()
-}
-
 fn matching(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("christofides/matching");
     group.sample_size(20);
     for n in [100, 1000, 3000, 10_000] {
-        let points = uniform(n);
+        let points = uniform(SEED, n);
         let mut solver = Solver::default();
         group.bench_function(BenchmarkId::from_parameter(n), |bencher| {
             bencher.iter(|| solver.complete(&Points(black_box(&points))));
@@ -31,7 +22,7 @@ fn whole(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("christofides/whole");
     group.sample_size(10);
     for n in [12, 100, 1000, 10_000, 100_000] {
-        let points = uniform(n);
+        let points = uniform(SEED, n);
         group.bench_function(BenchmarkId::from_parameter(n), |bencher| {
             bencher.iter(|| christofides(&Points(black_box(&points))));
         });
@@ -42,7 +33,7 @@ fn chained(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("christofides/chained");
     group.sample_size(10);
     for (n, kicks) in [(100, 1000), (1000, 1000)] {
-        let points = uniform(n);
+        let points = uniform(SEED, n);
         let metric = Points(&points);
         let Ok(start) = christofides(&metric) else { return };
         let improve = || chained_improve(&metric, start.clone(), kicks, 1, &mut || false);
@@ -58,7 +49,7 @@ fn bound(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("christofides/held_karp");
     group.sample_size(10);
     for n in [100, 1000] {
-        let points = uniform(n);
+        let points = uniform(SEED, n);
         group.bench_function(BenchmarkId::from_parameter(n), |bencher| {
             bencher.iter(|| held_karp(&Points(black_box(&points)), 400));
         });
@@ -69,7 +60,7 @@ fn exact(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("christofides/exact");
     group.sample_size(10);
     for n in [8, 12, 40] {
-        let points = uniform(n);
+        let points = uniform(SEED, n);
         group.bench_function(BenchmarkId::from_parameter(n), |bencher| {
             bencher.iter(|| exact_tour(&Points(black_box(&points))));
         });

@@ -1,25 +1,16 @@
 //! k-means, complete linkage and merging on uniform points.
 #![allow(missing_docs)]
 
+use benches::{SEED, uniform};
 use cluster::{KMeansOptions, Linkage, kmeans, linkage, linkage_condensed, merge_within};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
-/// Uniform points in the unit square from a multiplicative generator.
-fn points(n: usize) -> Vec<[f64; 2]> {
-    let mut state = 0x2545_F491_4F6C_DD1D_u64;
-    let mut draw = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    (0..n).map(|_| [draw(), draw()]).collect()
-}
-
 fn bench(c: &mut Criterion) {
     let one_run = KMeansOptions::default().with_n_init(1);
-    let small = points(100);
+    let small = uniform(SEED, 100);
     c.bench_function("cluster/kmeans/n100-k8", |b| b.iter(|| kmeans(black_box(&small), 8, &one_run)));
-    let large = points(100_000);
+    let large = uniform(SEED, 100_000);
     let mut group = c.benchmark_group("cluster/large");
     group.sample_size(10);
     for k in [8, 64, 256] {
@@ -28,7 +19,7 @@ fn bench(c: &mut Criterion) {
         });
     }
     group.bench_function("merge_within/n100000", |b| b.iter(|| merge_within(black_box(&large), 0.001)));
-    let middle = points(2000);
+    let middle = uniform(SEED, 2000);
     group.bench_function("linkage/complete/n2000", |b| {
         b.iter(|| linkage(black_box(&middle), Linkage::Complete))
     });

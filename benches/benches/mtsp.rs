@@ -1,26 +1,15 @@
 //! The paper's pipeline, lower bounds, search and replanning on 100 targets with 8 vehicles.
 #![allow(missing_docs)]
 
+use benches::depot_and_targets;
 use christofides::Points;
 use cluster::{KMeansOptions, kmeans};
 use criterion::{Criterion, criterion_group, criterion_main};
 use mtsp::{Absorb, Fleet, Options, Problem, Revisit, assign, lower_bound, solve};
 use std::hint::black_box;
 
-/// The depot at the origin, and uniform points in a square of 2000 m.
-fn nodes(n: usize) -> Vec<[f64; 2]> {
-    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut draw = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2000.0 * (state >> 11) as f64 / (1u64 << 53) as f64 - 1000.0
-    };
-    let mut nodes = vec![[0.0, 0.0]];
-    nodes.extend((0..n).map(|_| [draw(), draw()]));
-    nodes
-}
-
 fn bench(c: &mut Criterion) {
-    let nodes = nodes(100);
+    let nodes = depot_and_targets(100);
     let metric = Points(&nodes);
     let Ok(problem) = Problem::new(&metric, 8) else { return };
     let Ok(clusters) = kmeans(&nodes[1..], 8, &KMeansOptions::default()) else { return };
