@@ -45,10 +45,10 @@ pub fn equal_shares(n: usize, k: usize) -> Vec<usize> {
 /// * `capacities`: the greatest size of each cluster; [`equal_shares`] for equal ones.
 ///
 /// # Errors
-/// [`Error::CapacityTooSmall`] and those of [`kmeans`](crate::kmeans()).
+/// [`Error::CapacityTooSmall`], [`Error::TooManyClusters`] above 4096, and those of [`kmeans`](crate::kmeans()).
 ///
 /// # Complexity
-/// O(n (n + k^3)) an assignment at worst, O(n k) memory.
+/// O(n (n + k^3)) an assignment at worst, O((n + k) k) memory.
 ///
 /// # Examples
 /// ```
@@ -67,15 +67,19 @@ pub fn balanced_kmeans<const D: usize>(
 ) -> Result<Balanced<D>, Error> {
     options.validate()?;
     check_finite(points)?;
+    let clusters = capacities.len();
+    if clusters > MOST_CLUSTERS {
+        return Err(Error::TooManyClusters { clusters, limit: MOST_CLUSTERS });
+    }
     let capacity = capacities.iter().fold(0_usize, |sum, c| sum.saturating_add(*c));
     if capacity < points.len() {
         return Err(Error::CapacityTooSmall { capacity, points: points.len() });
     }
     let scale = safe_scale(points);
     let points = &scaled(points, scale);
-    let mut centroids = kmeans(points, capacities.len(), options)?.centroids;
+    let mut centroids = kmeans(points, clusters, options)?.centroids;
     let last = centroids.last().copied().unwrap_or([0.0; D]);
-    centroids.resize(capacities.len(), last);
+    centroids.resize(clusters, last);
     let mut found = Balanced {
         labels: vec![],
         centroids,
@@ -101,6 +105,9 @@ pub fn balanced_kmeans<const D: usize>(
     found.inertia = if points.is_empty() { 0.0 } else { found.inertia / scale / scale };
     Ok(found)
 }
+
+/// The cheapest moves between any two of so many clusters take a quarter of a gibibyte.
+const MOST_CLUSTERS: usize = 4096;
 
 fn means<const D: usize>(points: &[[f64; D]], labels: &[usize], old: &[[f64; D]]) -> Vec<[f64; D]> {
     let mut sums = vec![([0.0; D], 0.0); old.len()];

@@ -49,6 +49,24 @@ pub enum Error {
         /// The number of points.
         points: usize,
     },
+    /// More clusters than moves between any two of them can be kept for.
+    #[error("{clusters} clusters of limited size are asked for, at most {limit} can be")]
+    TooManyClusters {
+        /// The number of clusters.
+        clusters: usize,
+        /// The greatest number allowed.
+        limit: usize,
+    },
+    /// More points than distances between any two of them can be kept for.
+    #[error(
+        "the distances between {points} points do not fit the memory, those of {limit} may; merge_within needs none"
+    )]
+    TooManyPoints {
+        /// The number of points.
+        points: usize,
+        /// The greatest number allowed.
+        limit: usize,
+    },
     /// A diameter or height is NaN or negative.
     #[error("a diameter must be a number that is not negative, got {diameter}")]
     InvalidDiameter {

@@ -33,7 +33,11 @@ const SAFE_SQUARE: f64 = 1.0e-291;
 
 /// A power of two by which to multiply all points so that squared distances are safe; 1 unless coordinates are extreme.
 pub(crate) fn safe_scale<const D: usize>(points: &[[f64; D]]) -> f64 {
-    let largest = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    power_of_two(points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())))
+}
+
+/// A power of two that brings a greatest magnitude to about 1; 1 unless it is extreme.
+pub(crate) fn power_of_two(largest: f64) -> f64 {
     if largest == 0.0 || (1e-100..1e100).contains(&largest) {
         return 1.0;
     }

@@ -73,7 +73,8 @@ impl<const D: usize> Online<D> {
         let count = self.counts[label] as f64;
         if count > 0.0 {
             for axis in 0..D {
-                self.centroids[label][axis] += (self.centroids[label][axis] - point[axis]) / count;
+                // Divided first: the difference of two finite numbers may be none.
+                self.centroids[label][axis] += self.centroids[label][axis] / count - point[axis] / count;
             }
         }
         Ok(label)
@@ -143,7 +144,7 @@ impl<const D: usize> Online<D> {
             return;
         }
         for axis in 0..D {
-            self.centroids[label][axis] += (point[axis] - self.centroids[label][axis]) / count;
+            self.centroids[label][axis] += point[axis] / count - self.centroids[label][axis] / count;
         }
     }
 

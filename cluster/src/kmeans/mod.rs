@@ -169,6 +169,15 @@ fn run<const D: usize>(
 fn finish<const D: usize>(tree: &Tree<D>, run: Run<D>, k: usize, scale: f64) -> KMeans<D> {
     let status = if run.centroids.len() < k { KMeansStatus::FewerDistinctPoints } else { run.status };
     let labels = tree.in_original_order(&run.labels);
-    let centroids = run.centroids.iter().map(|c| c.map(|x| x / scale)).collect();
+    let centroids = run.centroids.iter().map(|c| unscaled(tree, c, scale)).collect();
     KMeans { labels, centroids, inertia: run.inertia / scale / scale, iterations: run.iterations, status }
+}
+
+/// A centroid among the caller's points. Means of weights that are no normal numbers round beyond the points, and there may be no number there.
+fn unscaled<const D: usize>(tree: &Tree<D>, centroid: &[f64; D], scale: f64) -> [f64; D] {
+    if scale == 1.0 {
+        return *centroid;
+    }
+    let (low, high) = (&tree.nodes[0].low, &tree.nodes[0].high);
+    std::array::from_fn(|axis| centroid[axis].max(low[axis]).min(high[axis]) / scale)
 }

@@ -9,7 +9,7 @@ pub use dendrogram::{Dendrogram, Step};
 pub use within::{Partition, merge_within};
 
 use crate::error::{Error, check_finite};
-use crate::geometry::distance;
+use crate::geometry::{distance, power_of_two};
 
 /// How the dissimilarity of two clusters follows from those of their members.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -47,10 +47,11 @@ impl From<Linkage> for kodama::Method {
 /// tie, one of the possible outcomes.
 ///
 /// # Errors
-/// [`Error::NonFiniteCoordinate`].
+/// [`Error::NonFiniteCoordinate`]; [`Error::TooManyPoints`] above 65 536, whose distances take 16 GiB.
 ///
 /// # Complexity
-/// O(n^2) time and memory (n (n - 1) / 2 distances). For a cut at a given diameter of very many points use [`merge_within`].
+/// O(n^2) time and memory (n (n - 1) / 2 distances). For a cut at a given diameter of very many points use [`merge_within`], for complete
+/// linkage in linear memory [`clink`].
 ///
 /// # Examples
 /// ```
@@ -64,12 +65,17 @@ impl From<Linkage> for kodama::Method {
 pub fn linkage<const D: usize>(points: &[[f64; D]], linkage: Linkage) -> Result<Dendrogram, Error> {
     check_finite(points)?;
     let n = points.len();
+    if n > MOST_POINTS {
+        return Err(Error::TooManyPoints { points: n, limit: MOST_POINTS });
+    }
     let mut condensed = Vec::with_capacity(n * n.saturating_sub(1) / 2);
     for i in 0..n {
         condensed.extend(points[i + 1..].iter().map(|q| distance(&points[i], q)));
     }
     linkage_condensed(&mut condensed, n, linkage)
 }
+
+const MOST_POINTS: usize = 1 << 16;
 
 /// Hierarchical clustering of `n` observations from their condensed dissimilarities, which are overwritten.
 ///
@@ -92,6 +98,9 @@ pub fn linkage_condensed(condensed: &mut [f64], n: usize, linkage: Linkage) -> R
     if n < 2 {
         return Ok(Dendrogram::new(n, vec![]));
     }
+    // Sums and squares of extreme numbers leave the range, and kodama panics on what is no number: a power of two brings them back.
+    let scale = power_of_two(condensed.iter().fold(0.0, |m: f64, d| m.max(*d)));
+    condensed.iter_mut().for_each(|d| *d *= scale);
     let found = kodama::linkage(condensed, n, linkage.into());
     let steps = found
         .steps()
@@ -99,7 +108,7 @@ pub fn linkage_condensed(condensed: &mut [f64], n: usize, linkage: Linkage) -> R
         .map(|s| Step {
             cluster1: s.cluster1.min(s.cluster2),
             cluster2: s.cluster1.max(s.cluster2),
-            dissimilarity: s.dissimilarity,
+            dissimilarity: s.dissimilarity / scale,
             size: s.size,
         })
         .collect();
