@@ -12,6 +12,22 @@ pub enum Error {
     /// The metric has no node, so no depot.
     #[error("there is no node, so no depot")]
     NoDepot,
+    /// More vehicles than routes are kept for.
+    #[error("there are {vehicles} vehicles, at most {limit} can be planned for")]
+    TooManyVehicles {
+        /// The number of vehicles.
+        vehicles: usize,
+        /// The greatest number allowed.
+        limit: usize,
+    },
+    /// More nodes than lists are kept for.
+    #[error("there are {nodes} nodes, at most {limit} can be planned for")]
+    TooManyNodes {
+        /// The number of nodes.
+        nodes: usize,
+        /// The greatest number allowed.
+        limit: usize,
+    },
     /// A node index is not below the number of nodes.
     #[error("there is no node {node}: the metric has {nodes}")]
     UnknownNode {

@@ -49,20 +49,30 @@ impl<M: Metric> Clone for Problem<'_, M> {
     }
 }
 
+/// Numbers beyond any instance that can be solved, but within memory.
+const MOST_VEHICLES: usize = 1 << 20;
+const MOST_NODES: usize = 1 << 24;
+
 impl<'a, M: Metric> Problem<'a, M> {
     /// `vehicles` vehicles that start at node 0, the depot, and return to it; all other nodes are targets.
     ///
     /// # Errors
-    /// [`Error::NoVehicles`], [`Error::NoDepot`]; [`Error::InvalidDistance`] if a leg between the depot and a target is
+    /// [`Error::NoVehicles`], [`Error::NoDepot`]; [`Error::TooManyVehicles`], [`Error::TooManyNodes`] for more than a million vehicles or
+    /// sixteen million nodes, before memory is asked for; [`Error::InvalidDistance`] if a leg between the depot and a target is
     /// not finite or is negative (legs between targets are checked by the functions that read them all).
     pub fn new(metric: &'a M, vehicles: usize) -> Result<Self, Error> {
         if vehicles == 0 {
             return Err(Error::NoVehicles);
         }
+        check_fleet(vehicles)?;
         if metric.is_empty() {
             return Err(Error::NoDepot);
         }
-        let service = vec![0.0; metric.len()];
+        let nodes = metric.len();
+        if nodes > MOST_NODES {
+            return Err(Error::TooManyNodes { nodes, limit: MOST_NODES });
+        }
+        let service = vec![0.0; nodes];
         let (starts, ends) = (vec![0; vehicles], vec![End::At(0); vehicles]);
         let limits = vec![f64::INFINITY; vehicles];
         let mut problem = Self { metric, service, starts, ends, limits, targets: vec![], forbidden: vec![] };
@@ -302,6 +312,14 @@ impl<'a, M: Metric> Problem<'a, M> {
         }
         length
     }
+}
+
+/// Refuses more vehicles than lists of them would fit the memory.
+pub(crate) fn check_fleet(vehicles: usize) -> Result<(), Error> {
+    if vehicles > MOST_VEHICLES {
+        return Err(Error::TooManyVehicles { vehicles, limit: MOST_VEHICLES });
+    }
+    Ok(())
 }
 
 pub(crate) fn expect_length(list: List, expected: usize, found: usize) -> Result<(), Error> {

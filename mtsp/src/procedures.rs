@@ -2,7 +2,7 @@
 
 use crate::cluster_first::cluster_routes;
 use crate::error::Error;
-use crate::problem::Problem;
+use crate::problem::{Problem, check_fleet};
 use christofides::Points;
 use cluster::{KMeansOptions, kmeans};
 
@@ -32,7 +32,7 @@ impl RoundsCost {
 /// * `depot`, `rounds`: positions in metres; `rounds[k]` are the targets that appear before round k.
 ///
 /// # Errors
-/// [`Error::NoVehicles`], [`Error::Clusters`] and [`Error::InvalidDistance`] for positions that are not finite.
+/// [`Error::NoVehicles`], [`Error::TooManyVehicles`], [`Error::Clusters`] and [`Error::InvalidDistance`] for positions that are not finite.
 pub fn procedure_1(
     depot: [f64; 2],
     rounds: &[Vec<[f64; 2]>],
@@ -62,6 +62,7 @@ pub fn procedure_2(
     vehicles: usize,
     seed: u64,
 ) -> Result<RoundsCost, Error> {
+    check_fleet(vehicles)?;
     let mut cost = RoundsCost { rounds: vec![], home: vec![] };
     let mut here = vec![depot; vehicles];
     let mut clusters: Vec<Vec<[f64; 2]>> = vec![vec![]; vehicles];

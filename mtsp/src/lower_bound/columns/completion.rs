@@ -25,7 +25,9 @@ impl Completion {
         let (n, unit) = (graph.nodes, limit / UNITS);
         // More than needed by two, against the rounding of quotients.
         let units = (limit / unit) as usize + 3;
-        let legs: Vec<usize> = (0..n * n).map(|ij| (graph.leg(ij / n, ij % n) / unit) as usize).collect();
+        // A leg longer than the limit is as good as any other such leg.
+        let in_units = |leg: f64| ((leg / unit) as usize).min(units);
+        let legs: Vec<usize> = (0..n * n).map(|ij| in_units(graph.leg(ij / n, ij % n))).collect();
         if (0..n * n).any(|ij| ij / n != ij % n && legs[ij] == 0) {
             return None;
         }
@@ -45,7 +47,7 @@ impl Completion {
     /// At least what a walk from `target` (its own prize not counted) to the depot within `length` collects.
     #[inline]
     pub fn most(&self, target: usize, length: f64) -> f64 {
-        let units = (length / self.unit) as usize + 1;
+        let units = ((length / self.unit) as usize).saturating_add(1);
         f64::from(self.most[target * self.units + units.min(self.units - 1)])
     }
 }
