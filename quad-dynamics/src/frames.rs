@@ -89,6 +89,9 @@ pub fn to_wxyz(attitude: &UnitQuaternion<f64>) -> Vector4<f64> {
 #[must_use]
 pub fn from_wxyz(w: f64, x: f64, y: f64, z: f64) -> UnitQuaternion<f64> {
     let raw = Quaternion::new(w, x, y, z);
+    let norm = raw.norm();
+    // Only numbers whose squares leave the range are scaled first: others keep their bits.
+    let raw = if norm > 1e-150 && norm.is_finite() { raw } else { raw / raw.coords.amax() };
     UnitQuaternion::try_new(raw, 0.0).filter(|q| q.coords.iter().all(|c| c.is_finite())).unwrap_or_default()
 }
 

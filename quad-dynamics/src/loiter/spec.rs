@@ -43,7 +43,7 @@ impl CameraLimit {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LoiterSpec {
-    /// Radius of the circle, m.
+    /// Radius of the circle, m, above 1e-9 and at most 1e9.
     pub radius: f64,
     /// Fraction of the greatest thrust that may be used, in (0, 1]. Default 0.6: the rest is for control.
     pub thrust_budget: f64,
@@ -164,7 +164,7 @@ impl LoiterSpec {
         use Requirement::{Positive, Within};
         let quarter = std::f64::consts::FRAC_PI_2;
         // Beyond these radii the square of a length or of a speed leaves the numbers.
-        let radius = Within { low: 0.0, high: 1e9 };
+        let radius = Within { low: 1e-9, high: 1e9 };
         let camera = self.camera_limit.map(|camera| camera.angular_speed);
         let given = [
             Some((Field::Radius, self.radius, radius)),

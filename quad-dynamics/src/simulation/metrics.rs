@@ -75,7 +75,7 @@ impl Tracking {
 fn nearest(path: &[Vector3<f64>], i: usize, reach: usize, position: &Vector3<f64>) -> (f64, f64) {
     let last = path.len() - 1;
     let mut best = ((position - path[i]).norm(), i as f64);
-    for k in i.saturating_sub(reach)..(i + reach).min(last) {
+    for k in i.saturating_sub(reach)..i.saturating_add(reach).min(last) {
         let edge = path[k + 1] - path[k];
         let squared = edge.norm_squared();
         let share =

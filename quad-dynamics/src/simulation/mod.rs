@@ -115,11 +115,13 @@ pub struct Flight {
 
 /// Samples a motion every `step` seconds from 0 to `duration`, both ends included, as [`simulate`] wants it.
 ///
-/// A step or duration that is not positive gives the start only.
+/// A step or duration that is not positive gives the start only, and so do those that ask for more than 2^24 motions (9 hours at
+/// 500 Hz, 5 GB).
 #[must_use]
 pub fn sample(motion: impl Fn(f64) -> Motion, duration: f64, step: f64) -> Vec<Motion> {
+    const MOST_STEPS: f64 = (1_u32 << 24) as f64;
     let n_steps = (duration / step).round();
-    let n_steps = if n_steps.is_finite() && n_steps > 0.0 { n_steps as usize } else { 0 };
+    let n_steps = if step > 0.0 && (0.0..=MOST_STEPS).contains(&n_steps) { n_steps as usize } else { 0 };
     (0..=n_steps).map(|i| motion(i as f64 * step)).collect()
 }
 
@@ -160,9 +162,10 @@ pub fn simulate(
         if let Some(gusts) = &mut gusts {
             model.set_wind(gusts.advance());
         }
-        let centre = i + ahead;
+        let centre = i.saturating_add(ahead);
         let [before, middle, after] =
-            [centre.saturating_sub(half_ramp), centre, centre + half_ramp].map(|k| &plan[k.min(last)]);
+            [centre.saturating_sub(half_ramp), centre, centre.saturating_add(half_ramp)]
+                .map(|k| &plan[k.min(last)]);
         let target = Target::between(before, middle, after, 2.0 * half_ramp as f64 * step);
         let measured = options.noise.measure(&state, &mut random);
         let thrusts = controller.update(&measured, now, &target, step);
