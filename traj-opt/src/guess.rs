@@ -1,5 +1,6 @@
 //! Where the solver starts.
 
+use crate::mesh::MOST;
 use crate::{Error, Solution};
 use nalgebra::SVector;
 
@@ -29,14 +30,15 @@ impl<const NX: usize, const NU: usize> Guess<NX, NU> {
         }
     }
 
-    /// Samples `(fraction, state, control)` of a function of the fraction of the flight at `n + 1` equidistant points.
+    /// Samples `(fraction, state, control)` of a function of the fraction of the flight at `n + 1` equidistant points, `n` from 1
+    /// to 2^20.
     #[must_use]
     pub fn from_fn(
         final_time: f64,
         n: usize,
         sample: impl Fn(f64) -> (SVector<f64, NX>, SVector<f64, NU>),
     ) -> Self {
-        let n = n.max(1);
+        let n = n.clamp(1, MOST);
         let fractions: Vec<f64> = (0..=n).map(|k| k as f64 / n as f64).collect();
         let (states, controls) = fractions.iter().map(|&s| sample(s)).unzip();
         Self { final_time, fractions, states, controls }
@@ -59,12 +61,13 @@ impl<const NX: usize, const NU: usize> Guess<NX, NU> {
         Ok(Self { final_time, fractions, states, controls })
     }
 
-    /// The trajectory of a solution, resampled at its knots and at `per_segment - 1` points between them.
+    /// The trajectory of a solution, resampled at its knots and at `per_segment - 1` points between them,
+    /// 2^20 points at most.
     #[must_use]
     pub fn from_solution(solution: &Solution<NX, NU>, per_segment: usize) -> Self {
         let (t0, tf) = (solution.initial_time(), solution.final_time());
         let times = solution.times();
-        let per = per_segment.max(1);
+        let per = per_segment.clamp(1, MOST / (times.len() - 1).clamp(1, MOST));
         let mut guess = Self { final_time: tf, fractions: vec![], states: vec![], controls: vec![] };
         for k in 0..times.len() - 1 {
             for j in 0..per {

@@ -5,26 +5,46 @@ use crate::Error;
 /// Knots of a trajectory as fractions of the flight: increasing from 0 to 1, `n_segments + 1` of them.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Mesh {
     fractions: Vec<f64>,
 }
 
+/// A mesh as it stands in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Unchecked {
+    fractions: Vec<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Mesh {
+    type Error = Error;
+
+    fn try_from(unchecked: Unchecked) -> Result<Self, Error> {
+        Self::from_fractions(unchecked.fractions)
+    }
+}
+
+/// More segments or samples than anybody solves for; what is asked for beyond is cut, before it takes memory.
+pub(crate) const MOST: usize = 1 << 20;
+
 impl Mesh {
-    /// `n_segments` segments of equal length (at least one).
+    /// `n_segments` segments of equal length (at least one, at most 2^20).
     #[must_use]
     pub fn uniform(n_segments: usize) -> Self {
-        let n = n_segments.max(1);
+        let n = n_segments.clamp(1, MOST);
         Self { fractions: (0..=n).map(|k| k as f64 / n as f64).collect() }
     }
 
-    /// Segments that are short at both ends and long in the middle.
+    /// Segments that are short at both ends and long in the middle; at least one, at most 2^20.
     ///
     /// Knots are `x = (1 - a) s + a (3 s^2 - 2 s^3)` of uniform `s`: the outermost segments are about `1 - a` times the
     /// uniform length, those in the middle `1 + a/2` times. `grading` is `a`, clamped to `[0, 0.95]`; 0 is uniform.
     /// Minimum-time flights turn hardest near their ends, whatever their length.
     #[must_use]
     pub fn graded(n_segments: usize, grading: f64) -> Self {
-        let n = n_segments.max(1);
+        let n = n_segments.clamp(1, MOST);
         let a = if grading.is_finite() { grading.clamp(0.0, 0.95) } else { 0.0 };
         let knot = |k: usize| {
             let s = k as f64 / n as f64;

@@ -51,7 +51,7 @@ pub struct PointMass {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BoundOptions {
-    /// Intervals. Default 20. The gap of the relaxation falls with their square.
+    /// Intervals, at most 1000. Default 20. The gap of the relaxation falls with their square.
     pub n_intervals: usize,
     /// Relative width of the enclosures of the duration. Default 0.01. The bound is lower by about as much.
     pub resolution: f64,
@@ -136,8 +136,8 @@ fn validate(mass: &PointMass, options: &BoundOptions) -> Result<(), Error> {
     if !(options.resolution > 0.0 && options.resolution <= 1.0) {
         return refuse("resolution", options.resolution);
     }
-    if options.n_intervals == 0 {
-        return refuse("n_intervals", 0.0);
+    if !(1..=1000).contains(&options.n_intervals) {
+        return refuse("n_intervals", options.n_intervals as f64);
     }
     Ok(())
 }

@@ -66,6 +66,8 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let free_time = bounds.final_time_lower != bounds.final_time_upper;
     let program = Program { problem, mesh, transcription, bounds, scales, free_time };
     let memory = &mut workspace.memory;
+    // one type for all callers: the iterations are compiled once a problem
+    let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut monitor;
     let restarts = if free_time { options.time_restarts } else { 0 };
     let mut spent = 0;
     let possible = bounds.final_time_lower..=bounds.final_time_upper;
@@ -75,7 +77,7 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
             continue;
         }
         memory.start(&program, guess, final_time, options);
-        let mut outcome = memory.run(&program, options, true, &mut monitor);
+        let mut outcome = memory.run(&program, options, true, &mut *monitor);
         spent += outcome.iterations;
         if outcome.status != Status::Infeasible {
             outcome.iterations = spent;
@@ -84,7 +86,7 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     }
     // what is diagnosed is what the caller's own guess leads to
     memory.start(&program, guess, guess.final_time(), options);
-    let mut outcome = memory.run(&program, options, false, &mut monitor);
+    let mut outcome = memory.run(&program, options, false, &mut *monitor);
     outcome.iterations += spent;
     Ok(extract(&program, memory, &outcome))
 }
@@ -123,8 +125,9 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let free_time = bounds.final_time_lower != bounds.final_time_upper;
     let program = Program { problem, mesh, transcription, bounds, scales, free_time };
     let memory = &mut workspace.memory;
+    let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut monitor;
     if memory.start_at(&program, &previous.point, options) {
-        let outcome = memory.run(&program, options, true, &mut monitor);
+        let outcome = memory.run(&program, options, true, &mut *monitor);
         if outcome.status.is_success() || outcome.status == Status::Stopped {
             return Ok(extract(&program, memory, &outcome));
         }

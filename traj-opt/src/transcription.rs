@@ -12,7 +12,7 @@ pub enum Transcription {
     /// `substeps` equal steps. What it returns can be flown: integrating the controls reproduces the states to the error of
     /// the Runge-Kutta steps. Path constraints hold at the knots, with the control of the segment that begins there.
     RungeKutta {
-        /// Steps a segment, at least 1.
+        /// Steps a segment, from 1 to 100.
         substeps: usize,
     },
     /// Trapezoidal rule, order 2: the control is linear over a segment (two control vectors: left, right).
@@ -79,10 +79,10 @@ impl Default for Transcription {
 }
 
 impl Transcription {
-    /// With at least one step a segment.
+    /// With at least one step a segment, and not so many that the number alone takes memory.
     pub(crate) fn valid(self) -> Self {
         match self {
-            Self::RungeKutta { substeps } => Self::RungeKutta { substeps: substeps.max(1) },
+            Self::RungeKutta { substeps } => Self::RungeKutta { substeps: substeps.clamp(1, 100) },
             other => other,
         }
     }
