@@ -7,6 +7,8 @@ use crate::planning::envelope;
 use crate::reach;
 use crate::transition::hover;
 
+/// More pads than this stand around no depot; a number alone must not take memory.
+const MOST_VEHICLES: usize = 1000;
 /// Coordinates beyond this (m) are no local field any more, and lose millimetres in the solver.
 const FARTHEST: f64 = 1e5;
 /// More wind than any vehicle flies in (m/s).
@@ -40,10 +42,11 @@ impl Mission {
     }
 
     /// Where each vehicle hovers before and after its flight (m, east-north-up): equally spaced on a circle around the
-    /// depot, neighbours a fifth farther apart than the separation; one vehicle alone hovers above the depot.
+    /// depot, neighbours a fifth farther apart than the separation; one vehicle alone hovers above the depot. Those
+    /// of the first 1000 vehicles, since larger fleets are refused.
     #[must_use]
     pub fn pads(&self) -> Vec<[f64; 3]> {
-        let n = self.fleet.vehicles;
+        let n = self.fleet.vehicles.min(MOST_VEHICLES);
         let half_step = std::f64::consts::PI / n as f64;
         let radius = if n < 2 { 0.0 } else { 0.6 * self.fleet.separation / half_step.sin() };
         (0..n)
@@ -61,7 +64,8 @@ impl Mission {
         if self.fleet.vehicles == 0 {
             ranges.0.push(Problem::NoVehicles);
         }
-        ranges.within("fleet.vehicles", &[self.fleet.vehicles as f64], 0.0, 1000.0, "up to 1000");
+        let most = MOST_VEHICLES as f64;
+        ranges.within("fleet.vehicles", &[self.fleet.vehicles as f64], 0.0, most, "up to 1000");
         ranges.within("fleet.separation", &[self.fleet.separation], 0.0, 1000.0, "from 0 to 1000 (m)");
         ranges.above_zero("fleet.endurance", self.fleet.endurance, f64::INFINITY, "above 0 (s)");
         if let Some(camera) = self.camera {

@@ -2,6 +2,7 @@
 
 use crate::mission::Mission;
 use crate::plan::Plan;
+use crate::sample::MOST_MOMENTS;
 use quad_dynamics::Motion;
 use quad_dynamics::simulation::{Flight, SimulationOptions, Tracking};
 
@@ -25,11 +26,12 @@ pub struct Flown {
 impl Plan {
     /// The flight of one vehicle as motions every `step` seconds, its last moment included; empty for a spare vehicle.
     ///
-    /// `None` if there is no such vehicle, if the step is not positive, or if `mission` is not the one that was planned.
+    /// `None` if there is no such vehicle, if the step is not positive or asks for more than 2^24 motions (9 hours at 500 Hz), or if
+    /// `mission` is not the one that was planned.
     #[must_use]
     pub fn motions(&self, mission: &Mission, vehicle: usize, step: f64) -> Option<Vec<Motion>> {
         let planned = self.vehicles.get(vehicle)?;
-        if !(step > 0.0 && step.is_finite()) {
+        if !(step > 0.0 && step.is_finite() && planned.duration() / step < MOST_MOMENTS) {
             return None;
         }
         let sampler = self.sampler(mission)?;

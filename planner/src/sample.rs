@@ -59,7 +59,7 @@ impl<'a> Sampler<'a> {
         let planned = self.plan.vehicles.get(vehicle).filter(|planned| !planned.legs.is_empty());
         let flight = planned.filter(|_| step > 0.0 && step.is_finite());
         let [start, end] = flight.map_or([0.0; 2], |planned| [planned.start_time(), planned.end_time()]);
-        let n = flight.map_or(0, |_| ((end - start) / step).ceil() as usize + 1);
+        let n = flight.map_or(0, |_| (((end - start) / step).ceil() as usize).saturating_add(1));
         (0..n).map(move |i| self.moment(vehicle, (start + i as f64 * step).min(end)))
     }
 
@@ -132,6 +132,9 @@ impl<'a> Sampler<'a> {
     }
 }
 
+/// So many moments are kept in memory at most, which take about 4 GB.
+pub(crate) const MOST_MOMENTS: f64 = (1_u32 << 24) as f64;
+
 /// Step with which the power of a flight is summed up (s).
 const ENERGY_STEP: f64 = 0.1;
 
@@ -166,10 +169,12 @@ impl Plan {
 
     /// A vehicle's flight at `rate` (Hz, above 0), its last moment included; empty for a spare vehicle.
     ///
-    /// `None` if there is no such vehicle, if the rate is not positive, or if `mission` is not the one that was planned.
+    /// `None` if there is no such vehicle, if the rate is not positive or asks for more than 2^24 moments (9 hours at 500 Hz), or if
+    /// `mission` is not the one that was planned.
     #[must_use]
     pub fn samples(&self, mission: &Mission, vehicle: usize, rate: f64) -> Option<Vec<Sample>> {
-        (vehicle < self.vehicles.len() && rate > 0.0 && rate.is_finite()).then_some(())?;
+        let duration = self.vehicles.get(vehicle)?.duration();
+        (rate > 0.0 && duration * rate < MOST_MOMENTS).then_some(())?;
         Some(self.sampler(mission)?.samples(vehicle, 1.0 / rate).collect())
     }
 }
