@@ -73,8 +73,7 @@ impl<const D: usize> Online<D> {
         let count = self.counts[label] as f64;
         if count > 0.0 {
             for axis in 0..D {
-                // Divided first: the difference of two finite numbers may be none.
-                self.centroids[label][axis] += self.centroids[label][axis] / count - point[axis] / count;
+                moved(&mut self.centroids[label][axis], point[axis], -count);
             }
         }
         Ok(label)
@@ -144,7 +143,7 @@ impl<const D: usize> Online<D> {
             return;
         }
         for axis in 0..D {
-            self.centroids[label][axis] += point[axis] / count - self.centroids[label][axis] / count;
+            moved(&mut self.centroids[label][axis], point[axis], count);
         }
     }
 
@@ -158,4 +157,10 @@ impl<const D: usize> Online<D> {
             self.points.values().map(|(p, label)| squared_distance(p, &self.centroids[*label])).sum();
         sum / self.points.len().max(1) as f64
     }
+}
+
+/// Moves a mean towards a coordinate by one part in `count`, away from it if that is negative. Divided first, for the difference of two
+/// finite numbers may be none, and kept from rounding beyond the greatest number.
+fn moved(mean: &mut f64, coordinate: f64, count: f64) {
+    *mean = (*mean + (coordinate / count - *mean / count)).clamp(f64::MIN, f64::MAX);
 }

@@ -144,7 +144,7 @@ fn fly(fleet: &mut Fleet, places: &[[f64; 2]]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
     fn points_of_any_size(
