@@ -44,7 +44,7 @@ fn matching(times: usize) -> Result<(), Error> {
     let points = uniform(SEED, 1000);
     let mut solver = Solver::default();
     for _ in 0..times {
-        black_box(solver.complete(&Points(black_box(&points)))?);
+        let _ = black_box(solver.complete(&Points(black_box(&points)))?);
     }
     Ok(())
 }
@@ -52,7 +52,7 @@ fn matching(times: usize) -> Result<(), Error> {
 fn bound(times: usize) -> Result<(), Error> {
     let points = uniform(SEED, 100);
     for _ in 0..times {
-        black_box(held_karp(&Points(black_box(&points)), 400)?);
+        let _ = black_box(held_karp(&Points(black_box(&points)), 400)?);
     }
     Ok(())
 }
