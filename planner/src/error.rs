@@ -73,9 +73,7 @@ pub enum Problem {
         range: &'static str,
     },
     /// A plan cannot follow events.
-    #[error(
-        "the plan cannot follow events: plan the mission itself, with merge_within = 0 and one flight for each vehicle"
-    )]
+    #[error("the plan cannot follow events: plan the mission itself, with merge_within = 0")]
     NotReplannable,
     /// An event names something that there is not.
     #[error("there is no {what} {index}: number them from 0, as the mission does")]

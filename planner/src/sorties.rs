@@ -3,7 +3,8 @@
 use crate::allocation::{self, Routing};
 use crate::circles::Orbit;
 use crate::mission::Mission;
-use crate::plan::{Plan, Warning};
+use crate::plan::{Plan, VehiclePlan, Warning};
+use crate::separation::DELAY_STEP;
 
 /// A flight before it is flown.
 #[derive(Debug, Clone)]
@@ -68,11 +69,47 @@ pub(crate) fn share_out(
 }
 
 impl Plan {
-    /// For each flight the one of the same vehicle before it.
+    /// For each flight the one of the same vehicle before it; none for what stays on its pad.
     pub(crate) fn flights_before(&self) -> Vec<Option<usize>> {
         let before = |flight: usize| {
-            (0..flight).rev().find(|&other| self.vehicles[other].vehicle == self.vehicles[flight].vehicle)
+            let is_flown = |other: &usize| {
+                self.vehicles[*other].vehicle == self.vehicles[flight].vehicle
+                    && !self.vehicles[*other].legs.is_empty()
+            };
+            let stays = self.vehicles[flight].legs.is_empty();
+            (0..flight).rev().find(is_flown).filter(|_| !stays)
         };
         (0..self.vehicles.len()).map(before).collect()
     }
+
+    /// Lets every flight begin later that would begin before a battery can have been swapped since the flight before it; returns
+    /// which.
+    pub(crate) fn keep_swaps(&mut self, swap_time: f64) -> Vec<usize> {
+        let mut later = Vec::new();
+        for (flight, before) in self.flights_before().into_iter().enumerate() {
+            let Some(before) = before else { continue };
+            let earliest = self.vehicles[before].end_time() + pause(swap_time);
+            let wait = earliest - self.vehicles[flight].start_time();
+            if wait > 0.0 && self.vehicles[flight].lost_at.is_none() && !self.vehicles[flight].legs.is_empty()
+            {
+                self.vehicles[flight].shift(wait);
+                later.push(flight);
+            }
+        }
+        later
+    }
+}
+
+impl VehiclePlan {
+    /// The whole flight later (s).
+    pub(crate) fn shift(&mut self, delay: f64) {
+        for leg in &mut self.legs {
+            leg.start_time += delay;
+        }
+    }
+}
+
+/// Between a landing and the next start on the same pad (s): flights that touch in time would be too close.
+pub(crate) fn pause(swap_time: f64) -> f64 {
+    swap_time.max(DELAY_STEP)
 }

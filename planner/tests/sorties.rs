@@ -1,7 +1,9 @@
 //! Missions that are too long for one battery each.
 
 use planner::quad_dynamics::{Vehicle, VehicleParameters};
-use planner::{Entries, Failure, Mission, Options, Plan, Replanner, Target, Tolerances, Warning, plan};
+use planner::{
+    Entries, Event, Failure, Mission, Options, Plan, Replanner, Target, Tolerances, Warning, plan,
+};
 
 const SWAP_TIME: f64 = 45.0;
 
@@ -50,8 +52,61 @@ fn batteries_are_swapped_where_one_flight_each_is_too_long() {
             let seen = hasty.verify(&mission, &Tolerances::default()).failures;
             assert!(seen.contains(&Failure::Swap { vehicle: later.vehicle, flight }), "{seen:?}");
         }
-        assert!(Replanner::new(mission, plan).is_err());
     }
+}
+
+/// Every target once, flights in order with swaps between, none longer than the endurance.
+fn stands(replanner: &Replanner) {
+    let (plan, mission) = (replanner.plan(), replanner.mission());
+    let verification = plan.verify(mission, &Tolerances::default());
+    assert!(verification.passed(), "{:?}", verification.failures);
+    // No order of the same targets is short enough in every wind.
+    let is_calm = mission.environment.wind == [0.0; 2];
+    assert!(!is_calm || longest(plan) <= mission.fleet.endurance);
+}
+
+#[test]
+fn events_are_followed_over_several_flights() {
+    let mut mission = mission(2);
+    mission.swap_time = Some(SWAP_TIME);
+    mission.fleet.endurance = 0.7 * longest(&planned(&mission));
+    let plan = planned(&mission);
+    let second = plan.vehicles[2].clone();
+    let first = Replanner::new(mission, plan).unwrap();
+    let new = || Event::TargetAppears(Target::at([20.0, -18.0]));
+    let between = second.start_time() - 0.5 * SWAP_TIME;
+    for (time, event) in [
+        (3.0, new()),
+        (between, new()),
+        (second.start_time() + 2.0, new()),
+        (3.0, Event::TargetVanishes(second.route[0])),
+        (3.0, Event::WindChanges([3.0, -2.0])),
+    ] {
+        let mut replanner = first.clone();
+        let update = replanner.apply(time, &event).unwrap();
+        assert!(update.waiting.is_empty() && update.conflict.is_none(), "{event:?} at {time}: {update:?}");
+        stands(&replanner);
+    }
+    // A lost vehicle loses its later flights as well, and the other one flies once more.
+    for time in [3.0, between] {
+        let mut replanner = first.clone();
+        let update = replanner.apply(time, &Event::VehicleFails(second.vehicle)).unwrap();
+        assert!(update.waiting.is_empty(), "{update:?}");
+        assert!(
+            replanner
+                .plan()
+                .vehicles
+                .iter()
+                .all(|flight| flight.vehicle != second.vehicle || flight.end_time() <= time)
+        );
+        stands(&replanner);
+    }
+    // When all have landed, a vehicle takes off again.
+    let mut replanner = first.clone();
+    let late = first.plan().certificate.makespan + 1.0;
+    replanner.apply(late, &new()).unwrap();
+    assert_eq!(replanner.plan().flights(), first.plan().flights() + 1);
+    stands(&replanner);
 }
 
 #[test]

@@ -70,7 +70,10 @@ impl LivePlan {
         flies_on: bool,
     ) -> Result<Self, Failure> {
         let wrong = |source| Failure::of_planner(&file.file, source);
-        let mut replanner = Replanner::new(file.mission.clone(), plan).map_err(wrong)?;
+        let mut mission = file.mission.clone();
+        // Nobody swaps batteries by this link: each vehicle flies once.
+        mission.swap_time = None;
+        let mut replanner = Replanner::new(mission, plan).map_err(wrong)?;
         // A vehicle that has nothing to do was not made ready, and cannot help.
         for vehicle in 0..replanner.plan().vehicles.len() {
             if tasks.iter().all(|task| task.number != vehicle + 1) {

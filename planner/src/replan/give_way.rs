@@ -40,6 +40,7 @@ pub(super) fn give_way(plan: &mut Plan, mission: &Mission, time: f64) -> (Vec<us
             Some((_, Some(wait))) => {
                 wait.apply(plan);
                 vehicles.push(wait.vehicle);
+                vehicles.extend(plan.keep_swaps(mission.swap_time.unwrap_or(0.0)));
                 rounds -= 1;
             }
             Some((closest, None)) => return (vehicles, Some(closest)),

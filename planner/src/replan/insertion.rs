@@ -3,79 +3,149 @@
 use super::settled::Settled;
 use crate::legs::Airspace;
 use crate::mission::Objective;
-use crate::plan::Plan;
+use crate::plan::{Plan, VehiclePlan};
+use crate::sorties::pause;
 use crate::time_model::TimeModel;
 
-/// A place in a vehicle's open route.
+/// A place in a flight's open route.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
-    pub vehicle: usize,
+    pub flight: usize,
     pub position: usize,
 }
 
-/// The place where a target costs least: first in what the mission minimises, then in added time. `None` if nobody can fly.
-pub(super) fn cheapest(
-    airspace: &Airspace,
-    model: &TimeModel,
-    plan: &Plan,
-    team: &[Settled],
-    usable: &[bool],
-    target: usize,
-) -> Option<Place> {
-    let rounds = Rounds { airspace, model, plan };
-    let ends: Vec<f64> =
-        (0..team.len()).map(|vehicle| rounds.end(vehicle, &team[vehicle], &team[vehicle].open)).collect();
-    let makespan = ends.iter().copied().fold(0.0, f64::max);
-    let mut best: Option<([f64; 2], Place)> = None;
-    for (vehicle, settled) in team.iter().enumerate().filter(|&(i, settled)| usable[i] && !settled.landed) {
-        for position in 0..=settled.open.len() {
-            let end = rounds.end(vehicle, settled, &with(&settled.open, position, target));
-            let added = end - ends[vehicle];
-            let cost = match airspace.mission.objective {
-                Objective::Makespan => [end.max(makespan), added],
-                Objective::Total => [added, end],
-            };
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, Place { vehicle, position }));
-            }
-        }
-    }
-    best.map(|(_, place)| place)
+/// Modelled flights of a team under way.
+pub(super) struct Rounds<'a> {
+    pub airspace: &'a Airspace<'a>,
+    pub model: &'a TimeModel,
+    /// A flight that takes longer (s) is too long for endurance or battery.
+    pub limit: f64,
 }
 
-/// Moves open circles of the vehicle that is last back to one that can help, as long as that makes the mission shorter.
-pub(super) fn relieve(
-    airspace: &Airspace,
-    model: &TimeModel,
-    plan: &Plan,
-    team: &mut [Settled],
-    helper: usize,
-) {
-    let rounds = Rounds { airspace, model, plan };
-    loop {
-        let ends: Vec<f64> =
-            (0..team.len()).map(|vehicle| rounds.end(vehicle, &team[vehicle], &team[vehicle].open)).collect();
-        let Some(last) = (0..team.len()).max_by(|&a, &b| ends[a].total_cmp(&ends[b])) else { return };
-        if last == helper {
-            return;
-        }
-        let mut best = (ends[last] * (1.0 - 1e-9), None);
-        for from in 0..team[last].open.len() {
-            let mut shorter = team[last].open.clone();
-            let circle = shorter.remove(from);
-            let left = rounds.end(last, &team[last], &shorter);
-            for position in 0..=team[helper].open.len() {
-                let longer = with(&team[helper].open, position, circle);
-                let end = left.max(rounds.end(helper, &team[helper], &longer));
-                if end < best.0 {
-                    best = (end, Some((from, position)));
+/// When a flight ends, and whether it is too long.
+#[derive(Debug, Clone, Copy)]
+struct Round {
+    end: f64,
+    /// Whether it begins or goes on at all after what is settled, or has been flown.
+    is_flown: bool,
+    is_too_long: bool,
+}
+
+impl Rounds<'_> {
+    /// The place where a target costs least: first in flights that are too long, then in what the mission minimises, then in added
+    /// time. `None` if nobody can fly.
+    pub(super) fn cheapest(
+        &self,
+        plan: &Plan,
+        team: &[Settled],
+        usable: &[bool],
+        target: usize,
+    ) -> Option<Place> {
+        let before = self.ends(plan, team, None);
+        let [long, makespan, total] = sums(&before);
+        let mut best: Option<([f64; 3], Place)> = None;
+        for (flight, settled) in team.iter().enumerate() {
+            let planned = &plan.vehicles[flight];
+            if !usable[planned.vehicle] || settled.landed || planned.lost_at.is_some() {
+                continue;
+            }
+            for position in 0..=settled.open.len() {
+                let rounds = self.ends(plan, team, Some((flight, &with(&settled.open, position, target))));
+                let [long_then, makespan_then, total_then] = sums(&rounds);
+                let (long, added) = (long_then - long, total_then - total);
+                let cost = match self.airspace.mission.objective {
+                    Objective::Makespan => [long, makespan_then.max(makespan), added],
+                    Objective::Total => [long, added, makespan_then],
+                };
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, Place { flight, position }));
                 }
             }
         }
-        let Some((from, position)) = best.1 else { return };
-        let circle = team[last].open.remove(from);
-        team[helper].open.insert(position, circle);
+        best.map(|(_, place)| place)
     }
+
+    /// Moves open circles of the flight that ends last to one that can help, as long as that makes the mission shorter.
+    pub(super) fn relieve(&self, plan: &Plan, team: &mut [Settled], helper: usize) {
+        loop {
+            let rounds = self.ends(plan, team, None);
+            let end = |flight: usize| rounds[flight].end;
+            let Some(last) = (0..team.len()).max_by(|&a, &b| end(a).total_cmp(&end(b))) else { return };
+            if last == helper {
+                return;
+            }
+            let mut best = (end(last) * (1.0 - 1e-9), None);
+            for from in 0..team[last].open.len() {
+                let circle = team[last].open.remove(from);
+                for position in 0..=team[helper].open.len() {
+                    let longer = with(&team[helper].open, position, circle);
+                    let rounds = self.ends(plan, team, Some((helper, &longer)));
+                    let end = rounds[last].end.max(rounds[helper].end);
+                    if end < best.0 {
+                        best = (end, Some((from, position)));
+                    }
+                }
+                team[last].open.insert(from, circle);
+            }
+            let Some((from, position)) = best.1 else { return };
+            let circle = team[last].open.remove(from);
+            team[helper].open.insert(position, circle);
+        }
+    }
+
+    /// All flights, one of them with another open route.
+    fn ends(&self, plan: &Plan, team: &[Settled], other: Option<(usize, &[usize])>) -> Vec<Round> {
+        let swap = pause(self.airspace.mission.swap_time.unwrap_or(0.0));
+        let mut rounds: Vec<Round> = Vec::with_capacity(team.len());
+        for (flight, settled) in team.iter().enumerate() {
+            let planned = &plan.vehicles[flight];
+            let open =
+                other.filter(|&(index, _)| index == flight).map_or(&settled.open[..], |(_, open)| open);
+            let before = (0..flight)
+                .rev()
+                .find(|&other| plan.vehicles[other].vehicle == planned.vehicle && rounds[other].is_flown);
+            let earliest = before.map_or(0.0, |before| rounds[before].end + swap);
+            rounds.push(self.round(planned, settled, open, earliest));
+        }
+        rounds
+    }
+
+    /// A flight of `open` circles after what is settled; one that is still on the ground begins at `earliest` (s) or later.
+    fn round(&self, planned: &VehiclePlan, settled: &Settled, open: &[usize], earliest: f64) -> Round {
+        if settled.here.is_none() && open.is_empty() {
+            let is_flown = settled.landed && !planned.legs.is_empty();
+            return Round {
+                end: if is_flown { planned.end_time() } else { 0.0 },
+                is_flown,
+                is_too_long: false,
+            };
+        }
+        let pad = [planned.pad[0], planned.pad[1]];
+        let start = match settled.here {
+            Some(_) => planned.start_time(),
+            None => settled.time.max(earliest),
+        };
+        let mut here = settled.here.map_or(pad, |motion| [motion.position.x, motion.position.y]);
+        let mut time = settled.here.map_or(start, |_| settled.time);
+        for &circle in open {
+            let there = &self.airspace.orbits[circle].circle;
+            time += self.leg(here, there.centre, there.speed) + there.duration;
+            here = there.centre;
+        }
+        let end = time + self.leg(here, pad, 0.0);
+        Round { end, is_flown: true, is_too_long: end - start > self.limit }
+    }
+
+    fn leg(&self, [ax, ay]: [f64; 2], [bx, by]: [f64; 2], speed: f64) -> f64 {
+        self.model.time_over([bx - ax, by - ay], speed)
+    }
+}
+
+/// How many flights are too long, the latest end, and the sum of all ends.
+fn sums(rounds: &[Round]) -> [f64; 3] {
+    let long = rounds.iter().filter(|round| round.is_too_long).count() as f64;
+    let latest = rounds.iter().map(|round| round.end).fold(0.0, f64::max);
+    [long, latest, rounds.iter().map(|round| round.end).sum()]
 }
 
 /// A route with a circle put in.
@@ -83,33 +153,4 @@ fn with(open: &[usize], position: usize, circle: usize) -> Vec<usize> {
     let mut longer = open.to_vec();
     longer.insert(position, circle);
     longer
-}
-
-/// Modelled flights from circle to circle.
-struct Rounds<'a> {
-    airspace: &'a Airspace<'a>,
-    model: &'a TimeModel,
-    plan: &'a Plan,
-}
-
-impl Rounds<'_> {
-    /// When a vehicle would be back (s) that flies `open` circles after what is settled.
-    fn end(&self, vehicle: usize, settled: &Settled, open: &[usize]) -> f64 {
-        if open.is_empty() && settled.here.is_none() {
-            return self.plan.vehicles[vehicle].end_time().min(settled.time);
-        }
-        let pad = self.plan.vehicles[vehicle].pad;
-        let mut here = settled.here.map_or([pad[0], pad[1]], |motion| [motion.position.x, motion.position.y]);
-        let mut time = settled.time;
-        for &circle in open {
-            let there = &self.airspace.orbits[circle].circle;
-            time += self.leg(here, there.centre, there.speed) + there.duration;
-            here = there.centre;
-        }
-        time + self.leg(here, [pad[0], pad[1]], 0.0)
-    }
-
-    fn leg(&self, [ax, ay]: [f64; 2], [bx, by]: [f64; 2], speed: f64) -> f64 {
-        self.model.time_over([bx - ax, by - ay], speed)
-    }
 }

@@ -7,6 +7,7 @@
 //! | the legs of a changed route: those that stay are kept, the others solved | `refly.rs` |
 //! | lower bounds over every continuation | `outlook.rs` |
 //! | vehicles that would come too close wait for each other | `give_way.rs` |
+//! | further flights with fresh batteries | `sorties.rs` |
 //! | the winds that flights meet | `skies.rs` |
 
 #[cfg(test)]
@@ -17,17 +18,20 @@ mod outlook;
 mod refly;
 mod settled;
 mod skies;
+mod sorties;
 
 use crate::airs::Airs;
 use crate::circles::orbits;
 use crate::error::{Error, Problem};
 use crate::mission::{Mission, Target};
-use crate::plan::{Approach, Plan};
+use crate::plan::{Approach, Plan, VehiclePlan};
 use crate::planning::{calibrated, for_all};
 use crate::time_model::TimeModel;
+use insertion::Rounds;
 use outlook::{Outlook, Ways};
 use settled::Settled;
 use skies::Skies;
+use sorties::{add_sorties, drop_unused, follow_on};
 use std::sync::Arc;
 
 /// Something that happens while the team flies. Targets and vehicles are numbered from 0.
@@ -54,7 +58,7 @@ pub enum Event {
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Update {
-    /// The vehicles whose flights are different now, ascending.
+    /// The flights that are different now, by their places in [`Plan::vehicles`], ascending: with one flight each these are the vehicles.
     pub vehicles: Vec<usize>,
     /// Targets that wait because no vehicle is left that could take them; they are tried again at every later event.
     pub waiting: Vec<usize>,
@@ -68,7 +72,8 @@ pub struct Update {
 /// What is being flown stays as it is: a vehicle in a loiter finishes it, one on its way to a circle flies there, unless that
 /// target is gone or the way now breaks a safe distance; then it turns off at the next knot of its trajectory that is at least
 /// [`Replanner::REACTION`] seconds away. Vehicles that would come too close wait for each other, on a pad or by further turns of a
-/// loiter. No waiting target is lost, and none that has been circled is circled again.
+/// loiter. Where batteries are swapped ([`Mission::swap_time`]) a target that fits into no flight within the endurance, and one battery
+/// at the plan's greatest mean power, gets another flight; later flights of a vehicle follow the one before. No waiting target is lost, and none that has been circled is circled again.
 #[derive(Debug, Clone)]
 pub struct Replanner {
     mission: Mission,
@@ -76,6 +81,8 @@ pub struct Replanner {
     model: TimeModel,
     usable: Vec<bool>,
     waiting: Vec<usize>,
+    /// No flight should take longer (s).
+    limit: f64,
     /// Least times of legs as the last event needed them.
     ways: Option<Arc<Ways>>,
 }
@@ -88,13 +95,17 @@ impl Replanner {
     ///
     /// # Errors
     /// [`Error::Mission`] if the plan is not the mission's, or if the mission merges targets (`merge_within` above 0): then a
-    /// target has no circle of its own that could move; or if vehicles fly several sorties.
+    /// target has no circle of its own that could move.
     pub fn new(mission: Mission, plan: Plan) -> Result<Self, Error> {
-        let one_each = plan.vehicles.iter().enumerate().all(|(i, planned)| planned.vehicle == i);
-        if mission.merge_within > 0.0 || plan.circles.len() != mission.targets.len() || !one_each {
+        let n = mission.fleet.vehicles;
+        let is_its =
+            |(i, planned): (usize, &VehiclePlan)| planned.vehicle == i || (i >= n && planned.vehicle < n);
+        let fits = plan.vehicles.len() >= n && plan.vehicles.iter().enumerate().all(is_its);
+        if mission.merge_within > 0.0 || plan.circles.len() != mission.targets.len() || !fits {
             return Err(Error::Mission { problems: vec![Problem::NotReplannable] });
         }
-        let usable = vec![true; plan.vehicles.len()];
+        let usable = vec![true; n];
+        let limit = longest_flight(&plan, &mission);
         let model = {
             let airs = Airs::new(&plan, &mission);
             flyable(&airs)?;
@@ -103,7 +114,7 @@ impl Replanner {
             let flown = plan.vehicles.iter();
             calibrated(airspace, flown.map(|flown| (flown.pad, &flown.route[..], &flown.legs[..])))
         };
-        Ok(Self { mission, plan, model, usable, waiting: Vec::new(), ways: None })
+        Ok(Self { mission, plan, model, usable, waiting: Vec::new(), limit, ways: None })
     }
 
     /// The plan as it stands.
@@ -128,9 +139,29 @@ impl Replanner {
     /// Mostly the optimal control problems of the changed legs: two for a target that appears, one for one that vanishes, those of all later legs for a
     /// new wind.
     pub fn apply(&mut self, time: f64, event: &Event) -> Result<Update, Error> {
-        let mut next = self.clone();
-        let changes = next.take_in(time, event)?;
-        let update = next.refly(time, changes)?;
+        let attempt = |limit: f64| {
+            let mut next = self.clone();
+            let changes = next.take_in(time, event)?;
+            let places = !changes.wanted.is_empty();
+            let update = next.refly(time, changes, limit)?;
+            Ok::<_, Error>((next, update, places))
+        };
+        let (mut next, mut update, places) = attempt(self.limit)?;
+        // Solved flights scatter around the model: a limit that was too loose is tightened, if that helps.
+        let mut limit = self.limit;
+        for _ in 0..MOST_LIMITS {
+            let share =
+                update.vehicles.iter().map(|&flight| self.limit / next.plan.vehicles[flight].duration());
+            let share = share.fold(1.0, f64::min);
+            if share >= 1.0 || !places {
+                break;
+            }
+            limit *= share;
+            let tighter = attempt(limit)?;
+            if too_long(&tighter.0.plan, self.limit) < too_long(&next.plan, self.limit) {
+                (next, update) = (tighter.0, tighter.1);
+            }
+        }
         *self = next;
         Ok(update)
     }
@@ -171,20 +202,22 @@ impl Replanner {
             Event::VehicleFails(vehicle) => {
                 self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
                 self.usable[vehicle] = false;
-                let planned = &mut self.plan.vehicles[vehicle];
-                let done = planned.legs.iter().take_while(|leg| leg.end_time() <= time).count();
-                if done < planned.legs.len() {
-                    changes.wanted.extend(planned.route.drain(done.min(planned.route.len())..));
-                    planned.legs.truncate(done);
-                    planned.lost_at = Some(time);
+                for planned in self.plan.vehicles.iter_mut().filter(|planned| planned.vehicle == vehicle) {
+                    let done = planned.legs.iter().take_while(|leg| leg.end_time() <= time).count();
+                    if done < planned.legs.len() {
+                        changes.wanted.extend(planned.route.drain(done.min(planned.route.len())..));
+                        planned.legs.truncate(done);
+                        planned.lost_at = Some(time);
+                    }
                 }
             }
             Event::VehicleReturns(vehicle) => {
                 self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
-                let planned = &mut self.plan.vehicles[vehicle];
-                let fresh = planned.legs.is_empty();
-                self.known(fresh, "vehicle on its pad", vehicle)?;
-                self.plan.vehicles[vehicle].lost_at = None;
+                let own = || self.plan.vehicles.iter().filter(|planned| planned.vehicle == vehicle);
+                self.known(own().all(|planned| planned.legs.is_empty()), "vehicle on its pad", vehicle)?;
+                for planned in self.plan.vehicles.iter_mut().filter(|planned| planned.vehicle == vehicle) {
+                    planned.lost_at = None;
+                }
                 self.usable[vehicle] = true;
                 changes.relieved_by = Some(vehicle);
             }
@@ -219,28 +252,32 @@ impl Replanner {
     }
 
     /// Finds new routes and flies what has changed.
-    fn refly(&mut self, time: f64, changes: Changes) -> Result<Update, Error> {
+    fn refly(&mut self, time: f64, changes: Changes, limit: f64) -> Result<Update, Error> {
         let airs = Airs::new(&self.plan, &self.mission);
         flyable(&airs)?;
         let skies = Skies::new(&airs);
         let airspace = skies.now();
-        let mut team: Vec<Settled> = (0..self.plan.vehicles.len())
-            .map(|vehicle| Settled::at(&skies, &self.plan.vehicles[vehicle], time, &changes))
-            .collect();
+        let plan = &mut self.plan;
+        let (known, from) = (plan.vehicles.len(), skies.airs.from(time));
+        let ends: Vec<f64> = plan.vehicles.iter().map(VehiclePlan::end_time).collect();
+        let mut team: Vec<Settled> =
+            (0..known).map(|flight| Settled::at(&skies, &plan.vehicles[flight], time, &changes)).collect();
         for settled in &mut team {
             settled.open.retain(|circle| !changes.gone.contains(circle));
         }
+        let rounds = Rounds { airspace, model: &self.model, limit };
         let mut waiting = Vec::new();
         for &target in &changes.wanted {
-            let place = insertion::cheapest(airspace, &self.model, &self.plan, &team, &self.usable, target);
-            match place {
-                Some(place) => team[place.vehicle].open.insert(place.position, target),
+            add_sorties(plan, &mut team, &self.mission, &self.usable, from);
+            match rounds.cheapest(plan, &team, &self.usable, target) {
+                Some(place) => team[place.flight].open.insert(place.position, target),
                 None => waiting.push(target),
             }
         }
         if let Some(vehicle) = changes.relieved_by {
-            insertion::relieve(airspace, &self.model, &self.plan, &mut team, vehicle);
+            rounds.relieve(plan, &mut team, vehicle);
         }
+        drop_unused(plan, &mut team, known);
         let ways = Ways::of(airspace, &team, self.ways.as_ref());
         let bounds = Outlook::new(&ways, airspace, &self.plan, (&team, &self.usable), time).bounds();
         self.plan.circles = airspace.orbits.iter().map(|orbit| orbit.circle.clone()).collect();
@@ -269,6 +306,7 @@ impl Replanner {
             }
         }
         self.plan.skipped.sort_unstable();
+        vehicles.extend(follow_on(&mut self.plan, &ends, from, self.mission.swap_time.unwrap_or(0.0)));
         let (waiting_for_others, closest) = give_way::give_way(&mut self.plan, &self.mission, time);
         vehicles.extend(waiting_for_others);
         vehicles.sort_unstable();
@@ -284,6 +322,23 @@ impl Replanner {
         self.ways = Some(ways);
         Ok(Update { vehicles, waiting, conflict })
     }
+}
+
+/// Tighter limits on flights that are tried.
+const MOST_LIMITS: usize = 2;
+
+/// By how much flights are too long together (s).
+fn too_long(plan: &Plan, limit: f64) -> f64 {
+    plan.vehicles.iter().map(|planned| (planned.duration() - limit).max(0.0)).sum()
+}
+
+/// The longest flight (s) within the endurance, and on one battery at the greatest mean power of a plan's flights.
+fn longest_flight(plan: &Plan, mission: &Mission) -> f64 {
+    let usable = mission.fleet.vehicle.parameters().battery.usable_energy();
+    let Some(sampler) = plan.sampler(mission) else { return mission.fleet.endurance };
+    let flown = (0..plan.vehicles.len()).filter(|&flight| !plan.vehicles[flight].legs.is_empty());
+    let powers = flown.map(|flight| sampler.energy(flight) / plan.vehicles[flight].duration());
+    mission.fleet.endurance.min(usable / powers.fold(f64::MIN_POSITIVE, f64::max))
 }
 
 /// What an event asks for.
