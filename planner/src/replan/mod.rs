@@ -94,9 +94,13 @@ impl Replanner {
     /// Takes over a plan that is about to be flown.
     ///
     /// # Errors
-    /// [`Error::Mission`] if the plan is not the mission's, or if the mission merges targets (`merge_within` above 0): then a
+    /// [`Error::Mission`] with all that is wrong with the mission, if the plan is not the mission's, or if the mission merges targets (`merge_within` above 0): then a
     /// target has no circle of its own that could move.
     pub fn new(mission: Mission, plan: Plan) -> Result<Self, Error> {
+        let problems = mission.problems();
+        if !problems.is_empty() {
+            return Err(Error::Mission { problems });
+        }
         let n = mission.fleet.vehicles;
         let is_its =
             |(i, planned): (usize, &VehiclePlan)| planned.vehicle == i || (i >= n && planned.vehicle < n);
