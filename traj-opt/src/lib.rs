@@ -24,6 +24,7 @@
 //! | see what it leaves between the knots, or why it failed | [`Solution::greatest_violation`], [`Solution::diagnosis`] |
 //! | free the start time, link phases | [`FreeInitialTime`], [`Linked`] |
 //! | factorise without regard to stages | [`LinearAlgebra`] (feature `faer`) |
+//! | keep second-order cones (limits of a thrust vector, glide slopes) | `Conic`, `solve_conic` (feature `clarabel`) |
 //! | bound the minimum time from below | `least_time_bound` (feature `clarabel`) |
 //! | refine the mesh | [`solve_refined`], [`refined_mesh`] |
 //!
@@ -42,6 +43,9 @@
 //!    reduced Hessian is not positive definite, a multiple of the identity (in scaled variables) is added and the recursion
 //!    repeated (inertia correction). [`LinearAlgebra`] chooses a sparse `L D L'` of the same system instead, whose pivots tell the inertia.
 //! 5. *Filter line search* with second-order corrections; restoration by Gauss-Newton steps on the violation alone.
+//!
+//! The conic path (`solve_conic`) treats the equations of step 1 by a sequence of cone programs instead: trust region, virtual
+//! controls with an exact penalty, the Lagrangian's curvature made convex (Mao, Szmuk, Acikmese 2016, 2018).
 //!
 //! Static parameters, a free start time and the durations of phases are components of the state whose derivative is zero.
 //!
@@ -109,8 +113,12 @@
 //!   Automatica 46, 2010.
 //! - E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, Springer, 1993.
 //!
+//! - Y. Mao, M. Szmuk, B. Acikmese, *Successive convexification of non-convex optimal control problems and its convergence
+//!   properties*, IEEE CDC 2016.
+//!
 //! # Features
-//! `serde`: (de)serialisation of data types. `rayon`: batches over threads. `clarabel`: lower bounds by conic programming.
+//! `serde`: (de)serialisation of data types. `rayon`: batches over threads. `clarabel`: lower bounds by conic programming, and
+//! successive convexification.
 //! `faer`: sparse factorisation of the whole Newton system instead of the recursion over its stages.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

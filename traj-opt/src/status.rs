@@ -69,6 +69,6 @@ pub struct Iteration {
     pub regularisation: f64,
     /// Primal step length that led here.
     pub step_length: f64,
-    /// Radius of the trust region, in scaled variables; infinite for the interior-point method, which has none.
+    /// Radius of the trust region, in scaled variables; 0 for the interior-point method, which has none.
     pub trust_radius: f64,
 }

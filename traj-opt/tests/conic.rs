@@ -1,6 +1,10 @@
 //! Successive convexification against the interior-point method, exact values and certified bounds.
 #![cfg(feature = "clarabel")]
+#![allow(dead_code)]
 
+mod common;
+
+use common::quadcopter::*;
 use nalgebra::{RealField, SVector};
 use std::ops::ControlFlow;
 use traj_opt::{
@@ -21,10 +25,12 @@ fn real<T: RealField + Copy>(v: f64) -> T {
     nalgebra::convert(v)
 }
 
-/// A point mass in a plane with drag, `|u| <= 4`, from rest to rest in least time; `smooth` states its limits as path constraints,
+/// A point mass in a plane with drag, `|u| <= 4`, to rest in least time; `smooth` states its limits as path constraints,
 /// for the interior-point method. `slope`: it stays inside the cone `|x| <= 0.6 z`.
 struct Flight {
     start: [f64; 2],
+    /// Horizontal velocity at the start.
+    velocity: f64,
     end: [f64; 2],
     drag: f64,
     slope: bool,
@@ -50,7 +56,7 @@ impl Problem<4, 2> for Flight {
         let at = |p: [f64; 2]| SVector::from([p[0], p[1], 0.0, 0.0]);
         Bounds::free()
             .with_control([-4.0; 2].into(), [4.0; 2].into())
-            .with_initial_state(at(self.start))
+            .with_initial_state(at(self.start) + SVector::from([0.0, 0.0, self.velocity, 0.0]))
             .with_terminal_state(at(self.end))
             .with_final_time(0.1, 50.0)
     }
@@ -104,8 +110,10 @@ fn both(mut flight: Flight, scheme: Transcription, n: usize) -> (f64, Solution<4
 #[test]
 fn it_reaches_the_value_of_the_interior_point_method_with_every_transcription() {
     for scheme in SCHEMES {
+        let mut free = 0.0;
         for (drag, slope) in [(0.0, false), (0.2, false), (0.2, true)] {
-            let flight = Flight { start: [0.0, 0.5], end: [3.0, 5.5], drag, slope, smooth: false };
+            let flight =
+                Flight { start: [0.3, 1.0], velocity: 1.5, end: [1.0, 3.0], drag, slope, smooth: false };
             let (value, conic) = both(flight, scheme, 16);
             assert!(conic.status.is_success(), "{scheme:?} {}: {:?}", conic.status, conic.diagnosis);
             assert!(
@@ -113,13 +121,54 @@ fn it_reaches_the_value_of_the_interior_point_method_with_every_transcription() 
                 "{scheme:?}: {} for {value}",
                 conic.objective
             );
+            assert!(!slope || value > free + 1e-4, "the slope does not bind: {value} {free}");
+            free = value;
         }
+    }
+}
+
+impl Conic<10, 4> for Transition<ThrustRate, 10> {
+    fn cones(&self) -> Vec<Cone<10, 4>> {
+        vec![]
+    }
+}
+
+/// A minimum-time transition of a quadcopter: rotations, drag, bang-bang thrust, singular rates. There are several local minima, and the
+/// two methods need not end in the same: this one may be faster, and its flight is checked by integration.
+#[test]
+fn it_flies_a_quadcopter_no_slower_than_the_interior_point_method() {
+    let (mesh, scheme) = (Mesh::uniform(16), Transcription::RungeKutta { substeps: 2 });
+    for r in references().iter().take(1) {
+        let t = thrust_rate(&r.start, &r.end);
+        let guess = naive_guess(&t, hover_thrust_rate());
+        let conic = solve_conic(&t, &mesh, scheme, &guess, &ConicOptions::default()).unwrap();
+        let smooth = solve(&t, &mesh, scheme, &guess, &Options::default()).unwrap();
+        println!(
+            "transition {}: conic {} {} {} {:?}, interior point {} {}",
+            r.id,
+            conic.objective,
+            conic.status,
+            conic.iterations,
+            conic.residuals,
+            smooth.objective,
+            smooth.status
+        );
+        assert!(
+            conic.status.is_success() && smooth.status.is_success(),
+            "{} {}",
+            conic.status,
+            smooth.status
+        );
+        assert!(conic.objective < smooth.objective * (1.0 + 1e-4));
+        let flown = conic.integrate(t.dynamics(), &IntegrateOptions::default()).unwrap();
+        assert!((flown.end_state() - conic.states()[16]).amax() < 1e-2, "{}", flown.end_state());
     }
 }
 
 #[test]
 fn no_value_is_below_the_certified_bound_and_the_controls_fly() {
-    let flight = Flight { start: [0.0, 0.5], end: [3.0, 4.5], drag: 0.0, slope: false, smooth: false };
+    let flight =
+        Flight { start: [0.0, 0.5], velocity: 0.0, end: [3.0, 4.5], drag: 0.0, slope: false, smooth: false };
     let s = solve_conic(
         &flight,
         &Mesh::uniform(20),
@@ -231,7 +280,8 @@ fn a_soft_landing_has_its_exact_value_and_the_relaxed_thrust_is_lossless() {
 
 #[test]
 fn it_can_be_stopped_refuses_bad_options_and_names_what_is_infeasible() {
-    let flight = Flight { start: [0.0, 0.5], end: [3.0, 5.5], drag: 0.2, slope: true, smooth: false };
+    let flight =
+        Flight { start: [0.0, 0.5], velocity: 0.0, end: [3.0, 5.5], drag: 0.2, slope: true, smooth: false };
     let (mesh, scheme, guess) = (Mesh::uniform(8), Transcription::Trapezoidal, line(&flight));
     let options = ConicOptions::default();
     let stop = |entry: &traj_opt::Iteration| match entry.iteration {

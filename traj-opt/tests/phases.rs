@@ -18,6 +18,15 @@ fn real<T: RealField + Copy>(v: f64) -> T {
     nalgebra::convert(v)
 }
 
+/// Options with every factorisation that is compiled in: the recursion, and the sparse one that knows no stages.
+fn factorisations() -> Vec<Options> {
+    vec![
+        Options::default(),
+        #[cfg(feature = "faer")]
+        Options::default().with_linear_algebra(traj_opt::LinearAlgebra::Sparse),
+    ]
+}
+
 /// A mass on a line that accelerates within limits, from and to given states or free ones, in least time.
 #[derive(Clone, Copy)]
 struct Leg {
@@ -128,9 +137,13 @@ fn two_phases_with_different_costs_meet_at_the_best_state() {
     };
     let leg = |from: [f64; 2], to: [f64; 2]| Guess::line(from.into(), to.into(), [0.0].into(), 0.5);
     let guess: Guess<6, 2> = problem.guess(&leg([0.0, 0.0], [0.5, 0.5]), &leg([0.5, 0.5], [1.0, 0.0]));
-    for scheme in SCHEMES {
-        let s = solve(&problem, &Mesh::uniform(20), scheme, &guess, &Options::default()).unwrap();
-        assert!(s.status.is_success(), "{scheme:?}: {}, {:?}", s.status, s.diagnosis);
+    for (scheme, options) in
+        SCHEMES.into_iter().flat_map(|s| factorisations().into_iter().map(move |o| (s, o)))
+    {
+        let s = solve(&problem, &Mesh::uniform(20), scheme, &guess, &options).unwrap();
+        let by = options.linear_algebra;
+        assert!(s.status.is_success(), "{scheme:?} {by:?}: {}, {:?}", s.status, s.diagnosis);
+        println!("{scheme:?} {by:?}: {} iterations", s.iterations);
         let tolerance = if scheme.order() == 2 || scheme == SCHEMES[0] { 2e-3 } else { 1e-7 };
         assert!((s.objective / exact - 1.0).abs() < tolerance, "{scheme:?}: {} for {exact}", s.objective);
         let (start, end) = (s.states()[0], s.states()[20]);
@@ -167,15 +180,12 @@ fn three_phases_nest() {
     };
     let leg = |from: f64, to: f64| Guess::line([from, 0.0].into(), [to, 0.0].into(), [0.0].into(), 1.0);
     let guess: Guess<10, 3> = problem.guess(&pair.guess(&leg(0.0, 0.5), &leg(0.5, 1.0)), &leg(1.0, 0.75));
-    let s = solve(&problem, &Mesh::uniform(10), Transcription::HermiteSimpson, &guess, &Options::default())
-        .unwrap();
     let exact = 4.0 * f64::sqrt(0.5) + 2.0 * f64::sqrt(0.25);
-    assert!(
-        s.status.is_success() && (s.objective - exact).abs() < 1e-5,
-        "{}: {} for {exact}",
-        s.status,
-        s.objective
-    );
+    for options in factorisations() {
+        let s = solve(&problem, &Mesh::uniform(10), Transcription::HermiteSimpson, &guess, &options).unwrap();
+        let right = s.status.is_success() && (s.objective - exact).abs() < 1e-5;
+        assert!(right, "{:?} {}: {} for {exact}", options.linear_algebra, s.status, s.objective);
+    }
 }
 
 /// Catches a target that moves as `1 + (t - 3)^2 / 4`, in least effort with a free departure: the duration is fixed.

@@ -151,7 +151,9 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
     ) -> Outcome {
         let (mut jacobian, mut curvature) = (Triplets::default(), Triplets::default());
         let mut step_length = 1.0;
-        for iteration in 0.. {
+        let mut ended = false;
+        let mut iteration = 0;
+        loop {
             self.memory.linearise_first_order(&self.program);
             let placed = self.place_cones();
             let residuals = self.residuals(&placed);
@@ -165,32 +167,18 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
                 trust_radius: self.radius,
             };
             self.memory.log.push(entry);
-            let finish = |status| Outcome { status, iterations: iteration, residuals };
-            let worst = residuals.primal.max(residuals.dual).max(residuals.complementarity);
-            if worst <= options.tolerance && iteration > 0 {
-                return finish(Status::Solved);
-            }
-            let ended = |status| match worst <= options.acceptable_tolerance {
-                true => finish(Status::Acceptable),
-                false => finish(status),
-            };
-            if monitor(&entry).is_break() {
-                return finish(Status::Stopped);
-            }
-            if iteration >= options.max_iterations {
-                return ended(Status::IterationLimit);
+            let spent = iteration >= options.max_iterations;
+            let status = judge(&residuals, options, ended, spent)
+                .or_else(|| monitor(&entry).is_break().then_some(Status::Stopped));
+            if let Some(status) = status {
+                return Outcome { status, iterations: iteration, residuals };
             }
             derivatives(&self.program, &self.memory, &mut jacobian, &mut curvature);
-            match self.step(&jacobian, &curvature, &placed, options) {
-                Step::Taken => step_length = 1.0,
-                Step::Refused => step_length = 0.0,
-                Step::None if residuals.primal > options.acceptable_tolerance => {
-                    return finish(Status::Infeasible);
-                }
-                Step::None => return ended(Status::Stalled),
-            }
+            let step = self.step(&jacobian, &curvature, &placed, options);
+            step_length = if step == Step::Taken { 1.0 } else { 0.0 };
+            ended = step == Step::None;
+            iteration += 1;
         }
-        unreachable!("the loop has no end of its own")
     }
 
     /// One subproblem, and what follows from its answer.
@@ -408,7 +396,28 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
     }
 }
 
+/// How the solve ends at an iterate, if it does: `ended` where no step reduces the penalised cost, `spent` at the limit of iterations.
+fn judge(residuals: &Residuals, options: &ConicOptions, ended: bool, spent: bool) -> Option<Status> {
+    let worst = residuals.primal.max(residuals.dual).max(residuals.complementarity);
+    if worst <= options.tolerance {
+        return Some(Status::Solved);
+    }
+    if !ended && !spent {
+        return None;
+    }
+    Some(if worst <= options.acceptable_tolerance {
+        Status::Acceptable
+    } else if !ended {
+        Status::IterationLimit
+    } else if residuals.primal > options.acceptable_tolerance {
+        Status::Infeasible
+    } else {
+        Status::Stalled
+    })
+}
+
 /// What became of a subproblem's step.
+#[derive(Clone, Copy, PartialEq)]
 enum Step {
     Taken,
     Refused,

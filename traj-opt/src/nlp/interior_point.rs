@@ -214,7 +214,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
                 mu: self.mu,
                 regularisation: self.delta,
                 step_length,
-                trust_radius: f64::INFINITY,
+                trust_radius: 0.0,
             };
             self.log.push(entry);
             let finish = |status| Outcome { status, iterations: iteration, residuals };
