@@ -18,10 +18,10 @@
 //! predicts; the radius grows or shrinks by that ratio (Y. Mao, M. Szmuk, B. Acikmese, *Successive convexification of non-convex optimal
 //! control problems and its convergence properties*, IEEE CDC 2016, and *Successive convexification: a superlinearly convergent algorithm*,
 //! arXiv 1804.06539, 2018; the penalty is the exact one of R. Fletcher's Sl1QP, *Practical Methods of Optimization*, 1987). Two things go
-//! beyond these sources. H is the Lagrangian's second derivative with its negative eigenvalues cut off, block by block: with H = 0 the method
-//! converges fast only where the constraints alone fix the solution, as for bang-bang controls. And a step that is refused
-//! for the curvature of the constraints is tried again with their values at its end (second-order correction), else the radius collapses
-//! before the cost has settled.
+//! beyond these sources. H is the Lagrangian's second derivative with its negative eigenvalues cut off, block by block. And a step of
+//! which the penalised cost makes too little is tried again with the constraints' values at its end (second-order correction).
+//!
+//! Near singular arcs and curved optima it is slow: what is cut off H is missing there, and some take more than a hundred cone programs.
 //!
 //! `Solved` means the same as for the interior-point method: scaled KKT residuals below the tolerance, those of the cones included.
 
