@@ -23,8 +23,6 @@ const MOST_ROUNDS: usize = 16;
 const TOLERANCE: f64 = 3e-6;
 /// First barrier parameter: the guesses meet both ends, and this takes half as many iterations as the solver's own 0.1.
 const FIRST_MU: f64 = 0.01;
-/// The same of a sketch that starts from a neighbour's trajectory: 14 iterations instead of 17. Drafts gain nothing by it.
-const NEIGHBOURS_MU: f64 = 1e-3;
 /// Longest Runge-Kutta step of a first solve (s). Segments are short where the attitude turns, so that even the longest flights
 /// take as long as with fine steps to 2e-4 of their time: enough to see that a candidate loses.
 const LONGEST_FIRST_STEP: f64 = 1.0;
@@ -133,8 +131,6 @@ pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     let about = match hint {
         Hint::Time(about) => about,
         Hint::Neighbour(neighbour) => {
-            let first_mu = if detail == Detail::Sketch { NEIGHBOURS_MU } else { FIRST_MU };
-            let attempt = Attempt { first_mu, ..attempt };
             if let Some(first) = bent(flight, neighbour, towards)
                 && let Ok(solved) = attempt.keep_clear(first, attempt.near(towards))
             {
@@ -202,7 +198,6 @@ struct Attempt<'a, F> {
     to_beat: f64,
     segments: usize,
     longest_step: f64,
-    first_mu: f64,
 }
 
 impl<'a, F> Attempt<'a, F> {
@@ -221,7 +216,7 @@ impl<'a, F> Attempt<'a, F> {
                 ((SKETCH_SHARE * all as f64).round().max(LEAST_SEGMENTS as f64) as usize, LONGEST_SKETCH_STEP)
             }
         };
-        Self { flight, start, goal, surroundings, to_beat, segments, longest_step, first_mu: FIRST_MU }
+        Self { flight, start, goal, surroundings, to_beat, segments, longest_step }
     }
 
     /// The keep-outs that a sensible flight may touch: those near the straight line. One that is entered all the same is
@@ -358,7 +353,7 @@ impl<'a, F> Attempt<'a, F> {
         let Setting { ref keep_outs, heights, longest_step, segments } = *setting;
         let problem =
             MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
-        let mut options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(self.first_mu);
+        let mut options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
         options.max_iterations = self.surroundings.most_iterations.unwrap_or(options.max_iterations);
         let workspace = &mut Workspace::new();
         let watch = |iteration: &Iteration| self.watch(iteration, segments);
