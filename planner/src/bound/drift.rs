@@ -106,7 +106,7 @@ impl Table {
     fn new(envelope: &Envelope, n: Vector2<f64>, from: f64, to: f64) -> Option<Self> {
         let tail = envelope.wind().dot(&n);
         // The rounding of the times themselves may bend them the other way: a chord needs its own allowance.
-        let time = |index| envelope.least_time_with(tail, distance(index), from, to) * (1.0 - 1e-6);
+        let time = |index| envelope.least_time_up_to(tail, distance(index), from, to) * (1.0 - 1e-6);
         let times: [f64; DISTANCES] = std::array::from_fn(time);
         let cruise = envelope.asymptote().max(from - tail).max(to - tail) + tail;
         (cruise > 0.0 && times.iter().all(|time| time.is_finite()))
@@ -157,6 +157,23 @@ mod tests {
                 let exact = envelope.least_time_with(wind.dot(n), gained, speed, speed);
                 prop_assert!(table.at(gained) <= exact, "{} {exact}", table.at(gained));
                 prop_assert!(table.at(gained) > 0.7 * exact - 0.05);
+            }
+        }
+
+        #[test]
+        fn slower_ends_and_other_directions_of_them_take_no_less_than_a_table_says(
+            wind in prop::array::uniform2(-6.0..6.0),
+            fastest in 0.5..8.0,
+            share in 0.0..1.0,
+            gained in 0.0..30.0,
+        ) {
+            let wind = Vector2::from(wind);
+            let envelope = Envelope::of_thrust(29.43, 1.5, 0.15, 9.81, fastest).with_wind(wind, fastest);
+            for [from, to] in [[0.0, fastest], [fastest, 0.0]] {
+                for (n, table) in &Drift::new(&envelope, from, to).tables {
+                    let exact = envelope.least_time_with(wind.dot(n), gained, share * from, share * to);
+                    prop_assert!(table.at(gained) <= exact, "{} {exact}", table.at(gained));
+                }
             }
         }
     }

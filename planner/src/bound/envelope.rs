@@ -23,6 +23,9 @@
 //! cover is `x(T_f) - x(0) - w_n T_f`: a `T_f` with `D(T_f) + w_n T_f < x(T_f) - x(0)` cannot be, nor can one before both speeds
 //! can meet. From there on `D' = min(F, B)` where the two cross, which rises with `T_f`: the left side is convex, and once it has
 //! been below the right one it crosses it only once.
+//!
+//! *From and to at most so fast:* then `F` and `B` start at the greatest speeds, and the two need not meet. Before they can, the lower
+//! one alone is `D'`, which rises with `T_f` as well: [`Envelope::least_time_up_to`].
 
 use nalgebra::Vector2;
 use quad_dynamics::{GRAVITY, Motion};
@@ -136,6 +139,30 @@ impl Envelope {
             }
         }
         through(low).time * ROUND_DOWN
+    }
+
+    /// The same from a speed of at most `from` to one of at most `to` (m/s over the ground, not negative): over a short way the slower end
+    /// decides, and the speed at the other stays below what is allowed.
+    pub(super) fn least_time_up_to(&self, tail: f64, distance: f64, from: f64, to: f64) -> f64 {
+        let (first, last) = (from - tail, to - tail);
+        let one_way = |speed: f64| {
+            let Reach { time, distance } =
+                if first < last { self.speeding_up(first, speed) } else { self.braking(speed, last) };
+            Reach { time, distance: distance + tail * time }
+        };
+        let (mut low, mut high) = (first.min(last), first.max(last));
+        if high >= self.asymptote() * (1.0 - 1e-9) || one_way(high).distance <= distance {
+            return self.least_time_with(tail, distance, from, to);
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if one_way(middle).distance < distance {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        one_way(low).time.max(0.0) * ROUND_DOWN
     }
 
     /// Fastest way from speed `from` up to `to >= from`.

@@ -73,7 +73,8 @@ pub struct Update {
 /// target is gone or the way now breaks a safe distance; then it turns off at the next knot of its trajectory that is at least
 /// [`Replanner::REACTION`] seconds away. Vehicles that would come too close wait for each other, on a pad or by further turns of a
 /// loiter. Where batteries are swapped ([`Mission::swap_time`]) a target that fits into no flight within the endurance, and one battery
-/// at the plan's greatest mean power, gets another flight; later flights of a vehicle follow the one before. No waiting target is lost, and none that has been circled is circled again.
+/// at the plan's greatest mean power, gets another flight; later flights of a vehicle follow the one before. No waiting target is lost,
+/// and none that has been circled is circled again.
 #[derive(Debug, Clone)]
 pub struct Replanner {
     mission: Mission,
@@ -94,8 +95,8 @@ impl Replanner {
     /// Takes over a plan that is about to be flown.
     ///
     /// # Errors
-    /// [`Error::Mission`] with all that is wrong with the mission, if the plan is not the mission's, or if the mission merges targets (`merge_within` above 0): then a
-    /// target has no circle of its own that could move.
+    /// [`Error::Mission`] with all that is wrong with the mission, if the plan is not the mission's, or if the mission merges targets
+    /// (`merge_within` above 0): then a target has no circle of its own that could move.
     pub fn new(mission: Mission, plan: Plan) -> Result<Self, Error> {
         let problems = mission.problems();
         if !problems.is_empty() {

@@ -87,19 +87,11 @@ impl Ways {
 
     /// From a hover on a pad to a circle.
     fn out(&self, pad: [f64; 3], circle: &Circle) -> f64 {
-        self.one_end(&self.leaving, between([pad[0], pad[1]], circle.centre), circle.radius)
+        self.leaving.least_time(between([pad[0], pad[1]], circle.centre), circle.radius)
     }
 
     fn home(&self, circle: &Circle, pad: [f64; 3]) -> f64 {
-        self.one_end(&self.landing, between(circle.centre, [pad[0], pad[1]]), circle.radius)
-    }
-
-    /// With a hover at one end, for circles of any speed up to the fastest: where the way is so short that the change of speed alone
-    /// decides about the time in the table, a slower circle may be left sooner, and only the top speeds count.
-    fn one_end(&self, table: &Drift, offset: Vector2<f64>, slack: f64) -> f64 {
-        let time = table.least_time(offset, slack);
-        let is_long = offset.norm() - slack >= self.fastest * time;
-        if is_long { time } else { self.between.least_time(offset, slack).min(time) }
+        self.landing.least_time(between(circle.centre, [pad[0], pad[1]]), circle.radius)
     }
 
     /// From a motion to a circle.
