@@ -51,15 +51,14 @@ pub(super) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         let (towards, how) = (cruise.nearer(towards), (Detail::Sketch, to_beat - cruise.time));
         let mut draft = solve::draft(flight, start, nearer, &towards, hint, &surroundings, how)?;
         draft.transition = cruise.inserted(draft.transition);
-        Ok(draft)
+        Ok::<_, Unsolved>(draft)
     };
     match (detail, hint) {
         (Detail::Sketch, Hint::Time(about)) => sketch(Hint::Time((about - cruise.time).max(0.0)), to_beat),
         (Detail::Sketch, Hint::Neighbour(it)) => sketch(Hint::Neighbour(&cruise.removed(it)), to_beat),
         (Detail::Full, Hint::Neighbour(_)) => whole(hint),
         (Detail::Full, Hint::Time(about)) => {
-            let sketch: Result<Draft, Unsolved> =
-                sketch(Hint::Time((about - cruise.time).max(0.0)), f64::INFINITY);
+            let sketch = sketch(Hint::Time((about - cruise.time).max(0.0)), f64::INFINITY);
             whole(sketch.as_ref().map_or(hint, |sketch| Hint::Neighbour(&sketch.transition)))
         }
     }
@@ -132,7 +131,9 @@ impl Cruise {
     fn removed(&self, transition: &Transition) -> Transition {
         let mut shorter = transition.clone();
         let middle = 0.5 * transition.duration;
-        let [first, last] = [middle - 0.5 * self.time, middle + 0.5 * self.time];
+        // A knot in the middle of a flight into which the cruise was inserted is where it was but for rounding, and stays.
+        let rounding = 1e-12 * transition.duration;
+        let [first, last] = [middle - 0.5 * self.time + rounding, middle + 0.5 * self.time];
         let before = transition.knots.partition_point(|&knot| knot <= first);
         let after = transition.knots.partition_point(|&knot| knot <= last);
         if before == 0 || after == transition.knots.len() {
