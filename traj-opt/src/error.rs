@@ -40,6 +40,12 @@ pub enum Error {
         /// Final time of the guess, s.
         final_time: f64,
     },
+    /// A factor or constant of a second-order cone is not finite.
+    #[error("a factor or constant of cone {cone} is not finite")]
+    NonFiniteCone {
+        /// Place of the cone in the list.
+        cone: usize,
+    },
     /// An option is out of range.
     #[error("option {option} is out of range: {value}")]
     InvalidOption {

@@ -26,14 +26,14 @@ fn real<T: RealField + Copy>(v: f64) -> T {
 }
 
 /// A point mass in a plane with drag, `|u| <= 4`, to rest in least time; `smooth` states its limits as path constraints,
-/// for the interior-point method. `slope`: it stays inside the cone `|x| <= 0.6 z`.
+/// for the interior-point method. `slope`: it stays inside the cone `|x| <= slope z`.
 struct Flight {
     start: [f64; 2],
     /// Horizontal velocity at the start.
     velocity: f64,
     end: [f64; 2],
     drag: f64,
-    slope: bool,
+    slope: Option<f64>,
     smooth: bool,
 }
 
@@ -66,14 +66,15 @@ impl Problem<4, 2> for Flight {
     }
 
     fn n_path(&self) -> usize {
-        if self.smooth { 1 + 2 * usize::from(self.slope) } else { 0 }
+        if self.smooth { 1 + 2 * usize::from(self.slope.is_some()) } else { 0 }
     }
 
     fn path<T: RealField + Copy>(&self, _: T, x: &SVector<T, 4>, u: &SVector<T, 2>, out: &mut [T]) {
+        let slope = self.slope.unwrap_or(0.0);
         let values = [
             real::<T>(16.0) - u[0] * u[0] - u[1] * u[1],
-            real::<T>(0.6) * x[1] - x[0],
-            real::<T>(0.6) * x[1] + x[0],
+            real::<T>(slope) * x[1] - x[0],
+            real::<T>(slope) * x[1] + x[0],
         ];
         out.iter_mut().zip(values).for_each(|(o, v)| *o = v);
     }
@@ -83,8 +84,9 @@ impl Conic<4, 2> for Flight {
     fn cones(&self) -> Vec<Cone<4, 2>> {
         let thrust =
             Cone { rows: vec![Affine::control(0), Affine::control(1)], radius: Affine::constant(4.0) };
-        let slope = Cone { rows: vec![Affine::state(0)], radius: Affine::constant(0.0).with_state(1, 0.6) };
-        if self.slope { vec![thrust, slope] } else { vec![thrust] }
+        let inside =
+            |slope| Cone { rows: vec![Affine::state(0)], radius: Affine::constant(0.0).with_state(1, slope) };
+        std::iter::once(thrust).chain(self.slope.map(inside)).collect()
     }
 }
 
@@ -115,7 +117,7 @@ fn it_reaches_the_value_of_the_interior_point_method_with_every_transcription() 
             velocity: 0.0,
             end: [3.0, 5.5],
             drag: 0.2,
-            slope: true,
+            slope: Some(0.6),
             smooth: false,
         };
         agrees(flight, scheme);
@@ -133,7 +135,7 @@ fn agrees(flight: Flight, scheme: Transcription) -> f64 {
 /// A start that moves outwards: the glide slope bends the way.
 #[test]
 fn a_binding_cone_of_positions_costs_what_it_costs_the_interior_point_method() {
-    let [free, bound] = [false, true].map(|slope| {
+    let [free, bound] = [None, Some(0.6)].map(|slope| {
         let flight =
             Flight { start: [0.3, 1.0], velocity: 1.5, end: [1.0, 3.0], drag: 0.2, slope, smooth: false };
         agrees(flight, Transcription::HermiteSimpson)
@@ -182,7 +184,7 @@ fn it_flies_a_quadcopter_no_slower_than_the_interior_point_method() {
 #[test]
 fn no_value_is_below_the_certified_bound_and_the_controls_fly() {
     let flight =
-        Flight { start: [0.0, 0.5], velocity: 0.0, end: [3.0, 4.5], drag: 0.0, slope: false, smooth: false };
+        Flight { start: [0.0, 0.5], velocity: 0.0, end: [3.0, 4.5], drag: 0.0, slope: None, smooth: false };
     let s = solve_conic(
         &flight,
         &Mesh::uniform(20),
@@ -294,8 +296,14 @@ fn a_soft_landing_has_its_exact_value_and_the_relaxed_thrust_is_lossless() {
 
 #[test]
 fn it_can_be_stopped_refuses_bad_options_and_names_what_is_infeasible() {
-    let flight =
-        Flight { start: [0.0, 0.5], velocity: 0.0, end: [3.0, 5.5], drag: 0.2, slope: true, smooth: false };
+    let flight = Flight {
+        start: [0.0, 0.5],
+        velocity: 0.0,
+        end: [3.0, 5.5],
+        drag: 0.2,
+        slope: Some(0.6),
+        smooth: false,
+    };
     let (mesh, scheme, guess) = (Mesh::uniform(8), Transcription::Trapezoidal, line(&flight));
     let options = ConicOptions::default();
     let stop = |entry: &traj_opt::Iteration| match entry.iteration {
@@ -306,6 +314,10 @@ fn it_can_be_stopped_refuses_bad_options_and_names_what_is_infeasible() {
     assert_eq!((s.status, s.iterations), (Status::Stopped, 2));
     let bad = options.clone().with_trust_radius(0.0);
     assert!(matches!(solve_conic(&flight, &mesh, scheme, &guess, &bad), Err(Error::InvalidOption { .. })));
+    let shapeless = Flight { slope: Some(f64::NAN), ..flight };
+    let refused = solve_conic(&shapeless, &mesh, scheme, &guess, &options);
+    assert_eq!(refused.unwrap_err(), Error::NonFiniteCone { cone: 1 });
+    let flight = Flight { slope: Some(0.6), ..shapeless };
     // an end outside the cone of positions
     let outside = Flight { end: [5.0, 5.5], ..flight };
     let s = solve_conic(&outside, &mesh, scheme, &line(&outside), &options).unwrap();

@@ -66,6 +66,10 @@ impl<const NX: usize, const NU: usize> Affine<NX, NU> {
         self
     }
 
+    fn is_finite(&self) -> bool {
+        self.constant.is_finite() && self.state.iter().chain(&self.control).all(|factor| factor.is_finite())
+    }
+
     /// Value at a state and control.
     #[must_use]
     pub fn at(&self, x: &SVector<f64, NX>, u: &SVector<f64, NU>) -> f64 {
@@ -83,6 +87,10 @@ pub struct Cone<const NX: usize, const NU: usize> {
 }
 
 impl<const NX: usize, const NU: usize> Cone<NX, NU> {
+    pub(super) fn is_finite(&self) -> bool {
+        self.radius.is_finite() && self.rows.iter().all(Affine::is_finite)
+    }
+
     /// `norm - radius` at a state and control: positive outside the cone, by how much.
     #[must_use]
     pub fn excess(&self, x: &SVector<f64, NX>, u: &SVector<f64, NU>) -> f64 {

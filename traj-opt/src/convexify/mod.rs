@@ -75,7 +75,7 @@ const ROUNDING: f64 = 1e-11;
 /// The penalised cost never rises. Like every local method it may end in a local minimum, or infeasible where the problem is not.
 ///
 /// # Errors
-/// Those of [`solve`](crate::solve), [`Error::InvalidOption`] for options out of range.
+/// Those of [`solve`](crate::solve), [`Error::InvalidOption`] for options out of range, [`Error::NonFiniteCone`].
 ///
 /// # Complexity
 /// An iteration is one cone program with some ten numbers a variable, sparse; it allocates. Several times as slow as
@@ -106,6 +106,10 @@ pub fn solve_conic_with<const NX: usize, const NU: usize, P: Conic<NX, NU>>(
     let bounds = problem.bounds();
     setup::validate(problem, &bounds)?;
     guess.validate(bounds.initial_time)?;
+    let cones = problem.cones();
+    if let Some(cone) = cones.iter().position(|cone| !cone.is_finite()) {
+        return Err(Error::NonFiniteCone { cone });
+    }
     let transcription = match transcription.valid() {
         Transcription::CompressedHermiteSimpson => Transcription::HermiteSimpson,
         other => other,
@@ -117,7 +121,7 @@ pub fn solve_conic_with<const NX: usize, const NU: usize, P: Conic<NX, NU>>(
     let inner = Options::default().with_max_iterations(options.max_iterations);
     memory.start(&program, guess, guess.final_time(), &inner);
     let mut method = Method {
-        cones: problem.cones(),
+        cones,
         program,
         memory,
         answer: Answer::default(),
