@@ -57,6 +57,8 @@ pub(crate) struct Separate;
 
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 impl Arithmetic for Fused {
+    const FUSED: bool = true;
+
     #[inline(always)]
     fn madd(a: f64, b: f64, c: f64) -> f64 {
         a.mul_add(b, c)
@@ -64,10 +66,26 @@ impl Arithmetic for Fused {
 }
 
 impl Arithmetic for Separate {
+    const FUSED: bool = false;
+
     #[inline(always)]
     fn madd(a: f64, b: f64, c: f64) -> f64 {
         a * b + c
     }
+}
+
+/// Whether [`dispatch`] runs kernels with [`Fused`] arithmetic on this processor.
+pub(crate) fn is_fused() -> bool {
+    struct IsFused;
+    impl Kernel for IsFused {
+        type Output = bool;
+
+        #[inline(always)]
+        fn run<A: Arithmetic>(self) -> bool {
+            A::FUSED
+        }
+    }
+    dispatch(IsFused)
 }
 
 /// Numbers that one instruction of the narrower kind takes.
@@ -171,6 +189,9 @@ pub(crate) fn is_unit<const N: usize>(x: &[f64; N], j: usize) -> bool {
 
 /// Products of small matrices in one way of rounding.
 pub(crate) trait Arithmetic {
+    /// Multiplication and addition are one instruction, of vectors as wide as the processor has them.
+    const FUSED: bool;
+
     /// `a b + c`.
     fn madd(a: f64, b: f64, c: f64) -> f64;
 

@@ -1,7 +1,7 @@
 //! The recursion backwards over the segments, with matrices.
 
 use super::triangular::factorise_pieces;
-use super::{NotConvex, Regularisation, Riccati, penalty};
+use super::{LONG, NotConvex, Regularisation, Riccati, penalty};
 use crate::dense::{
     Arithmetic, Kernel, LANES, array, array_mut, dispatch, fill_panels, is_unit, panels_mut, piece_of,
     pieces, rank_one, rows, rows_mut,
@@ -20,6 +20,9 @@ impl<const NX: usize> Kernel for Factorise<'_, '_, NX> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) -> Self::Output {
+        if const { NX < LONG || !A::FUSED } {
+            return self.riccati.factorise_here::<A, 0, 4, 4>(self.lq, self.reg);
+        }
         match (self.riccati.m, self.riccati.border_width) {
             (4, 4) => self.riccati.factorise_here::<A, 4, 4, 4>(self.lq, self.reg),
             (4, 12) => self.riccati.factorise_here::<A, 4, 4, 12>(self.lq, self.reg),

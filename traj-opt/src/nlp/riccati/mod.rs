@@ -17,7 +17,7 @@ mod solve;
 mod triangular;
 
 use super::quadratic::Quadratic;
-use crate::dense::{LANES, Panel, pieces};
+use crate::dense::{LANES, Panel, is_fused, pieces};
 use nalgebra::{SMatrix, SVector};
 
 /// The reduced Hessian is not positive definite.
@@ -98,7 +98,7 @@ impl<const NX: usize> Riccati<NX> {
     /// Prepares for problems of a given shape; `free_start` lists the components of the start state that are free.
     pub fn resize(&mut self, n: usize, m: usize, n_boundary: usize, free_start: &[usize], free_time: bool) {
         let nb = n_boundary + 1;
-        let width = border_width(m, nb);
+        let width = if NX >= LONG && is_fused() { border_width(m, nb) } else { LANES };
         let (mc, nc) = (pieces(m), nb.div_ceil(width));
         (self.n, self.m, self.n_border, self.free_time) = (n, m, nb, free_time);
         (self.control_pieces, self.border_pieces, self.border_width) = (mc, nc, width);
@@ -137,6 +137,10 @@ impl<const NX: usize> Riccati<NX> {
         self.work.resize(m, SVector::zeros());
     }
 }
+
+/// Number of states from which on the recursion is also compiled for the numbers of controls and lengths of borders of quadcopters,
+/// with fused arithmetic. Elsewhere it gains little, and every caller would wait for the compiler.
+const LONG: usize = 8;
 
 /// Length of the pieces of a row over a border of `n` columns: one piece where the kernels are compiled for it, because a number
 /// that multiplies a long row is loaded once.

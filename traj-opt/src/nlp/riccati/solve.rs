@@ -1,7 +1,7 @@
 //! The recursion with vectors: backwards with the right-hand side, forwards with the step.
 
 use super::triangular::{backward_scaled, forward_scaled};
-use super::{Riccati, penalty};
+use super::{LONG, Riccati, penalty};
 use crate::dense::{Arithmetic, Kernel, LANES, array, array_mut, dispatch, panels, pieces, rows, rows_mut};
 use crate::nlp::quadratic::{Quadratic, Rhs, Step};
 use nalgebra::SVector;
@@ -19,6 +19,9 @@ impl<const NX: usize> Kernel for Solve<'_, NX> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
+        if const { NX < LONG || !A::FUSED } {
+            return self.run_with::<A, 0, 4, 4>();
+        }
         match (self.riccati.m, self.riccati.border_width) {
             (4, 4) => self.run_with::<A, 4, 4, 4>(),
             (4, 12) => self.run_with::<A, 4, 4, 12>(),
