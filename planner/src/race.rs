@@ -69,7 +69,7 @@ impl<'a> Race<'a> {
             return f64::INFINITY;
         }
         let drafts = self.standings.iter().filter_map(|standing| match standing {
-            Standing::Solved(Detail::Full, draft) => Some(draft.transition.duration),
+            Standing::Solved(Detail::Full, draft) => Some(draft.time),
             _ => None,
         });
         let solved = drafts.fold(self.flown(), f64::min);
@@ -96,7 +96,7 @@ impl<'a> Race<'a> {
         else {
             return false;
         };
-        let excess = draft.transition.duration - self.entrances[index].lower_bound;
+        let excess = draft.time - self.entrances[index].lower_bound;
         !self.exhaustive
             && !self.is_again[index]
             && excess > ODD.0 * self.least_excess() + ODD.1
@@ -109,11 +109,11 @@ impl<'a> Race<'a> {
             (Standing::Open, Detail::Sketch) => self.expected(index) < to_beat,
             (Standing::Unsketched, Detail::Full) => self.entrances[index].lower_bound < to_beat,
             (Standing::Slower(given_up, draft), _) if *given_up == detail => {
-                draft.transition.duration < to_beat || self.is_odd(index, to_beat)
+                draft.time < to_beat || self.is_odd(index, to_beat)
             }
             (Standing::Solved(Detail::Sketch, _), Detail::Sketch) => self.is_odd(index, to_beat),
             (Standing::Solved(Detail::Sketch, draft), Detail::Full) => {
-                draft.transition.duration < self.to_beat(Detail::Sketch)
+                draft.time < self.to_beat(Detail::Sketch)
             }
             _ => false,
         }
@@ -135,7 +135,7 @@ impl<'a> Race<'a> {
     /// The candidates by ascending time of their trajectories or, where there is none, lower bound; ties by index.
     pub(crate) fn by_promise(&self) -> Vec<usize> {
         let promise = |index: usize| match &self.standings[index] {
-            Standing::Slower(_, draft) | Standing::Solved(_, draft) => draft.transition.duration,
+            Standing::Slower(_, draft) | Standing::Solved(_, draft) => draft.time,
             _ => self.entrances[index].lower_bound,
         };
         let mut order: Vec<usize> = (0..self.entrances.len()).collect();
@@ -149,7 +149,7 @@ impl<'a> Race<'a> {
             && let Standing::Slower(_, before) | Standing::Solved(_, before) = &self.standings[index]
         {
             self.is_again[index] = true;
-            if outcome.as_ref().map_or(true, |draft| draft.transition.duration >= before.transition.duration)
+            if outcome.as_ref().map_or(true, |draft| draft.time >= before.time)
             {
                 return;
             }
@@ -157,7 +157,7 @@ impl<'a> Race<'a> {
         self.standings[index] = match (outcome, detail) {
             (Ok(draft), _) if draft.is_complete => {
                 if detail == Detail::Sketch {
-                    self.sketched[index] = draft.transition.duration;
+                    self.sketched[index] = draft.time;
                 }
                 Standing::Solved(detail, draft)
             }
@@ -178,9 +178,9 @@ impl<'a> Race<'a> {
         let mut fastest: Option<(usize, f64)> = None;
         for (index, standing) in self.standings.iter().enumerate() {
             if let Standing::Solved(Detail::Full, draft) = standing
-                && draft.transition.duration < fastest.map_or(limit, |(_, duration)| duration)
+                && draft.time < fastest.map_or(limit, |(_, duration)| duration)
             {
-                fastest = Some((index, draft.transition.duration));
+                fastest = Some((index, draft.time));
             }
         }
         let (index, duration) = fastest?;
@@ -242,9 +242,9 @@ impl<'a> Race<'a> {
                 _ => Outcome::Slower { duration: self.expected(index) },
             },
             Standing::Slower(_, draft) | Standing::Solved(Detail::Sketch, draft) => {
-                Outcome::Slower { duration: draft.transition.duration }
+                Outcome::Slower { duration: draft.time }
             }
-            Standing::Solved(Detail::Full, draft) => Outcome::Solved { duration: draft.transition.duration },
+            Standing::Solved(Detail::Full, draft) => Outcome::Solved { duration: draft.time },
             &Standing::Polished(duration) => Outcome::Solved { duration },
             Standing::Failed(unsolved) => unsolved.into(),
         };

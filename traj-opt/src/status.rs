@@ -61,6 +61,9 @@ pub struct Iteration {
     pub iteration: usize,
     /// Cost.
     pub objective: f64,
+    /// Lagrangian: the cost plus multipliers times residuals. Near a solution it tells the cost there, of the present barrier parameter,
+    /// before the iterates are feasible: it is off by the square of what is left to correct.
+    pub lagrangian: f64,
     /// Residuals at the iterate.
     pub residuals: Residuals,
     /// Barrier parameter mu.

@@ -51,6 +51,7 @@ pub(super) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         let (towards, how) = (cruise.nearer(towards), (Detail::Sketch, to_beat - cruise.time));
         let mut draft = solve::draft(flight, start, nearer, &towards, hint, &surroundings, how)?;
         draft.transition = cruise.inserted(draft.transition);
+        draft.time += cruise.time;
         Ok::<_, Unsolved>(draft)
     };
     match (detail, hint) {

@@ -37,10 +37,18 @@ const SAFETY: f64 = 1.2;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
 
-/// Scaled primal residual of an iterate whose time tells something: at 1e-2 two of a hundred legs took another entry.
-const NEARLY_FEASIBLE: f64 = 1e-3;
-/// Bounds that hold in each segment, on controls and height; at the barrier parameter mu each is worth mu (s) of time.
-const BOUNDS_PER_SEGMENT: usize = 10;
+/// Dual residual of an iterate whose Lagrangian tells the time of the solution of its barrier problem, and how far (share of it) the
+/// Lagrangian then is from the cost at most.
+const NEARLY_STATIONARY: f64 = 2e-3;
+const NEARLY_EQUAL: f64 = 1e-3;
+/// Greatest barrier parameter of a sketch that is good enough, and greatest primal residual.
+const SKETCH_MU: f64 = 1e-3;
+const SKETCH_PRIMAL: f64 = 2e-2;
+/// Greatest regularisation with which a sketch is good enough: with more, directions are left along which the time still falls.
+const SKETCH_REGULARISATION: f64 = 1e-4;
+/// What a segment's bounds, on controls and height, cost in a barrier problem, in barrier parameters (s): as seen, and at most.
+const BARRIER_COST: f64 = 1.4;
+const GREATEST_BARRIER_COST: f64 = 4.0;
 
 /// Keep-outs at least so far (m) from the straight line are only considered once they have been entered: most never are, and
 /// each makes every solve slower.
@@ -89,6 +97,8 @@ pub(crate) enum Detail {
 /// A transition solved well enough to be compared with others, clear of every keep-out.
 pub(crate) struct Draft {
     pub transition: Transition,
+    /// About how long it takes when solved to the end at this detail (s).
+    pub time: f64,
     /// False if it was given up because it takes longer than what it had to beat.
     pub is_complete: bool,
     /// The [`Solved`] of the model at hand.
@@ -100,6 +110,8 @@ struct Solved<const NX: usize, const NU: usize> {
     solution: Solution<NX, NU>,
     setting: Setting,
     transition: Transition,
+    /// That of [`Draft`].
+    time: f64,
     /// Between the knots; `None` if it loses and was not looked at.
     seen: Option<Examination>,
 }
@@ -108,6 +120,7 @@ impl<const NX: usize, const NU: usize> From<Solved<NX, NU>> for Draft {
     fn from(solved: Solved<NX, NU>) -> Self {
         Self {
             transition: solved.transition.clone(),
+            time: solved.time,
             is_complete: solved.seen.is_some(),
             solved: Box::new(solved),
         }
@@ -195,6 +208,7 @@ struct Attempt<'a, F> {
     start: &'a Motion,
     goal: Goal<'a>,
     surroundings: &'a Surroundings<'a>,
+    detail: Detail,
     to_beat: f64,
     segments: usize,
     longest_step: f64,
@@ -216,7 +230,7 @@ impl<'a, F> Attempt<'a, F> {
                 ((SKETCH_SHARE * all as f64).round().max(LEAST_SEGMENTS as f64) as usize, LONGEST_SKETCH_STEP)
             }
         };
-        Self { flight, start, goal, surroundings, to_beat, segments, longest_step }
+        Self { flight, start, goal, surroundings, detail, to_beat, segments, longest_step }
     }
 
     /// The keep-outs that a sensible flight may touch: those near the straight line. One that is entered all the same is
@@ -268,7 +282,7 @@ impl<'a, F> Attempt<'a, F> {
         F: Flight<NX, NU>,
     {
         for round in 1..=MOST_ROUNDS {
-            let Solved { solution, mut setting, transition, seen } = solved;
+            let Solved { solution, mut setting, transition, seen, .. } = solved;
             let Some(seen) = seen else { return Err(unsolved(&solution)) };
             let segments = setting.segments;
             let stricter = self.adjust(&mut setting, &transition, &seen);
@@ -295,17 +309,21 @@ impl<'a, F> Attempt<'a, F> {
         F: Flight<NX, NU>,
     {
         let solution = self.solve(&first, &setting).ok_or(Unsolved::NOTHING)?;
-        // Only a candidate that loses is stopped.
+        // Stopped is a candidate that loses, or a sketch that is good enough.
         if !solution.status.is_success() && solution.status != Status::Stopped {
             return Err(unsolved(&solution));
         }
         let mut transition = record::<NX, NU, F>(&solution);
-        if transition.duration > self.to_beat {
-            return Ok(Solved { solution, setting, transition, seen: None });
+        let time = match solution.log.last() {
+            Some(last) if solution.status == Status::Stopped => expected_time(last, setting.segments),
+            _ => transition.duration,
+        };
+        if time > self.to_beat {
+            return Ok(Solved { solution, setting, transition, time, seen: None });
         }
         let seen = self.look(&transition).ok_or_else(|| unsolved(&solution))?;
         complete(&mut transition, &seen, self.miss(&solution, &seen.end));
-        Ok(Solved { solution, setting, transition, seen: Some(seen) })
+        Ok(Solved { solution, setting, transition, time, seen: Some(seen) })
     }
 
     /// Puts the keep-out that is entered farthest away; false if none is entered.
@@ -386,12 +404,18 @@ impl<'a, F> Attempt<'a, F> {
         solved.ok()
     }
 
-    /// Gives a solve up once it is nearly feasible and what is left to gain, the duality gap of the barrier problem, does not
-    /// make it fast enough: an estimate, and no proof, because the problem is not convex.
+    /// Ends a solve once the time of its barrier problem is known, if what the barrier costs does not make a candidate fast enough that
+    /// loses, or a sketch is good enough: an estimate, and no proof, because the problem is not convex.
     fn watch(&self, iteration: &Iteration, segments: usize) -> ControlFlow<()> {
-        let gap = iteration.mu * (BOUNDS_PER_SEGMENT * segments) as f64;
-        let loses = iteration.residuals.primal < NEARLY_FEASIBLE && iteration.objective - gap > self.to_beat;
-        if loses { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let Iteration { objective, lagrangian, mu, residuals, regularisation, .. } = *iteration;
+        let is_known = residuals.dual < NEARLY_STATIONARY
+            && (lagrangian - objective).abs() < NEARLY_EQUAL * objective;
+        let loses = lagrangian - mu * GREATEST_BARRIER_COST * segments as f64 > self.to_beat;
+        let is_sketched = self.detail == Detail::Sketch
+            && mu < SKETCH_MU
+            && residuals.primal < SKETCH_PRIMAL
+            && regularisation < SKETCH_REGULARISATION;
+        if is_known && (loses || is_sketched) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn look<const NX: usize, const NU: usize>(&self, transition: &Transition) -> Option<Examination>
@@ -418,6 +442,11 @@ impl<'a, F> Attempt<'a, F> {
             }
         }
     }
+}
+
+/// How long the flight takes at the solution to which an iterate is on the way (s).
+fn expected_time(iteration: &Iteration, segments: usize) -> f64 {
+    iteration.lagrangian - iteration.mu * BARRIER_COST * segments as f64
 }
 
 /// Residuals of a solve that is of no use.

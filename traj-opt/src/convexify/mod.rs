@@ -164,6 +164,7 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
             let entry = Iteration {
                 iteration,
                 objective: self.memory.values.objective,
+                lagrangian: self.memory.lagrangian(),
                 residuals,
                 mu: 0.0,
                 regularisation: 0.0,

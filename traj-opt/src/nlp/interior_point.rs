@@ -172,6 +172,15 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         mean.max(S_MAX) / S_MAX
     }
 
+    /// Cost plus multipliers times residuals.
+    pub fn lagrangian(&self) -> f64 {
+        let (values, duals) = (&self.values, &self.duals);
+        let vectors = duals.defect.iter().zip(&values.defect).chain(duals.middle.iter().zip(&values.middle));
+        let scalars = duals.path.iter().zip(&values.path).chain(duals.boundary.iter().zip(&values.boundary));
+        let products = vectors.map(|(y, c)| y.dot(c)).chain(scalars.map(|(y, c)| y * c));
+        values.objective + products.sum::<f64>()
+    }
+
     /// Barrier cost of a point.
     pub fn phi(&self, w: &[f64], values: &Values<NX>) -> f64 {
         values.objective + self.bounds.value(w, self.mu)
@@ -210,6 +219,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             let entry = Iteration {
                 iteration,
                 objective: self.values.objective,
+                lagrangian: self.lagrangian(),
                 residuals,
                 mu: self.mu,
                 regularisation: self.delta,
