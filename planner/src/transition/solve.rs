@@ -38,9 +38,9 @@ const SAFETY: f64 = 1.2;
 const OUTER_SEGMENT: f64 = 0.06;
 
 /// Dual residual of an iterate whose Lagrangian tells the time of the solution of its barrier problem, and how far (share of it) the
-/// Lagrangian then is from the cost at most.
-const NEARLY_STATIONARY: f64 = 2e-3;
-const NEARLY_EQUAL: f64 = 1e-3;
+/// Lagrangian then is from the cost at most; with ten times as much one of fifty legs took a slower entry.
+const NEARLY_STATIONARY: f64 = 3e-4;
+const NEARLY_EQUAL: f64 = 1e-4;
 /// Greatest barrier parameter of a sketch that is good enough, and greatest primal residual.
 const SKETCH_MU: f64 = 1e-3;
 const SKETCH_PRIMAL: f64 = 2e-2;
@@ -48,7 +48,7 @@ const SKETCH_PRIMAL: f64 = 2e-2;
 const SKETCH_REGULARISATION: f64 = 1e-4;
 /// What a segment's bounds, on controls and height, cost in a barrier problem, in barrier parameters (s): as seen, and at most.
 const BARRIER_COST: f64 = 1.4;
-const GREATEST_BARRIER_COST: f64 = 4.0;
+const GREATEST_BARRIER_COST: f64 = 2.5;
 
 /// Keep-outs at least so far (m) from the straight line are only considered once they have been entered: most never are, and
 /// each makes every solve slower.
