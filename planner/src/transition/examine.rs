@@ -8,9 +8,8 @@ use nalgebra::{SVector, Vector2, Vector3};
 use quad_dynamics::Motion;
 use traj_opt::{IntegrateOptions, Trajectory};
 
-/// Longest time between two looks at a trajectory (s): a vehicle at 20 m/s moves 5 cm in it, and a path of 1 m radius
-/// strays 0.3 mm from the chord.
-const LOOK_EVERY: f64 = 2.5e-3;
+/// Longest time between two looks at a trajectory (s): an acceleration of 25 m/s^2 takes a path 0.3 mm off the chord between them.
+const LOOK_EVERY: f64 = 1e-2;
 
 /// What was seen along the integrated trajectory.
 #[derive(Debug, Clone, Copy)]
@@ -147,7 +146,7 @@ impl Examination {
         self.end = moment;
     }
 
-    /// Least distance of places to keep-outs; those that are far from the rectangle around all places are passed over.
+    /// Least distance of a chain of places to keep-outs; those that are far from the rectangle around all places are passed over.
     fn keep_clear(&mut self, places: &[Vector2<f64>], keep_outs: &[KeepOut]) {
         let Some(&first) = places.first() else { return };
         let (low, high) = places.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
@@ -157,12 +156,21 @@ impl Examination {
             if beyond.norm() - keep_out.radius >= self.clearance {
                 continue;
             }
-            let nearest = places.iter().map(|place| (place - centre).norm()).fold(f64::INFINITY, f64::min);
+            let chords = places.windows(2).map(|pair| distance_to_chord(&centre, &pair[0], &pair[1]));
+            let nearest = chords.fold(f64::INFINITY, f64::min);
             if nearest - keep_out.radius < self.clearance {
                 (self.clearance, self.closest) = (nearest - keep_out.radius, Some(i));
             }
         }
     }
+}
+
+/// Distance from a place to the straight line between two others.
+fn distance_to_chord(place: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
+    let (along, offset) = (b - a, place - a);
+    let squared = along.norm_squared();
+    let share = if squared > 0.0 { (offset.dot(&along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (offset - along * share).norm()
 }
 
 /// How far the motion at the end is from the wanted one; a hover's yaw is free.
