@@ -22,6 +22,8 @@ const KAPPA_MU: f64 = 0.1;
 const THETA_MU: f64 = 1.7;
 const TAU_MIN: f64 = 0.99;
 const S_MAX: f64 = 100.0;
+/// Weight of the primal residual in the barrier error: where the multipliers are right, feasibility need not be waited for.
+const PRIMAL_WEIGHT: f64 = 0.1;
 /// Penalty on end conditions in the recursion, relative to the scaled length of their gradients.
 const RHO: f64 = 1e3;
 /// Range of the damping relative to the squared scales of the variables.
@@ -281,6 +283,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     fn update_barrier(&mut self, options: &Options, mut residuals: Residuals) {
         let least = options.tolerance / 10.0 * self.objective_scale;
         let scale = self.multiplier_scale() * self.objective_scale;
+        residuals.primal *= PRIMAL_WEIGHT;
         while self.mu > least {
             residuals.complementarity = self.bounds.complementarity(&self.w, self.mu) / scale;
             if worst_of(&residuals) > KAPPA_EPSILON * self.mu / self.objective_scale {
