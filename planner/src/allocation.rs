@@ -85,11 +85,26 @@ impl<'a> Routing<'a> {
         Some(costs.fold(0.0, f64::max))
     }
 
-    /// Routes that cost at most `limit`, as few as were found, with their costs; `None` if there are none.
-    pub(crate) fn fewest_routes(&self, limit: f64) -> Option<Vec<(Vec<usize>, f64)>> {
+    /// How many routes that cost at most `limit` are enough, by a search of a tenth of the iterations; `None` if there are none.
+    pub(crate) fn enough_routes(&self, limit: f64) -> Option<usize> {
+        let search = self.search.clone().with_iterations(self.search.iterations / 10);
+        Some(self.least_fleet(limit, &search)?.1.vehicles)
+    }
+
+    fn least_fleet(
+        &self,
+        limit: f64,
+        search: &mtsp::Options,
+    ) -> Option<(Problem<'_, LegTimes>, mtsp::LeastFleet)> {
         let n = self.orbits.len();
         let problem = self.problem(n).ok()?.with_limits(vec![limit; n]).ok()?;
-        let found = mtsp::least_fleet(&problem, &self.search).ok()?;
+        let found = mtsp::least_fleet(&problem, search).ok()?;
+        Some((problem, found))
+    }
+
+    /// Routes that cost at most `limit`, as few as were found, with their costs; `None` if there are none.
+    pub(crate) fn fewest_routes(&self, limit: f64) -> Option<Vec<(Vec<usize>, f64)>> {
+        let (problem, found) = self.least_fleet(limit, &self.search)?;
         let routes = found.solution.routes.into_iter().take(found.vehicles);
         let priced = |route: Vec<usize>| {
             let cost = problem.route_length(0, &route);

@@ -15,7 +15,8 @@ use crate::error::Error;
 use crate::mission::Mission;
 use crate::plan::{Certificate, VehiclePlan};
 use christofides::Metric;
-use mtsp::{Problem, lower_bound};
+use mtsp::Problem;
+use mtsp::lower_bound::{self, LowerBounds};
 use nalgebra::Vector2;
 
 /// Least leg times between depot (node 0, standing for every pad) and circles (node `i + 1` for circle `i`).
@@ -115,28 +116,27 @@ pub(crate) fn levelled(
     (times, service, potential)
 }
 
-/// The certificate of a finished plan.
-pub(crate) fn certificate(
-    mission: &Mission,
-    orbits: &[Orbit],
-    envelope: &Envelope,
-    vehicles: &[VehiclePlan],
-) -> Result<Certificate, Error> {
+/// What no plan of a mission can be below.
+pub(crate) fn bounds(mission: &Mission, orbits: &[Orbit], envelope: &Envelope) -> Result<LowerBounds, Error> {
     let pads = mission.pads();
     let n_vehicles = mission.fleet.vehicles;
-    let bounds = if mission.environment.is_windy() {
+    Ok(if mission.environment.is_windy() {
         let (legs, service) = in_wind(orbits, &pads, envelope);
         lower_bound::both(&Problem::new(&legs, n_vehicles)?.with_service(service)?)
     } else {
         let legs = LeastTimes { orbits, pads: &pads, envelope };
         let service = std::iter::once(0.0).chain(orbits.iter().map(|orbit| orbit.circle.duration)).collect();
         lower_bound::both(&Problem::new(&legs, n_vehicles)?.with_service(service)?)
-    };
+    })
+}
+
+/// The certificate of a finished plan.
+pub(crate) fn certificate(bounds: &LowerBounds, vehicles: &[VehiclePlan]) -> Certificate {
     let durations = || vehicles.iter().map(VehiclePlan::duration);
-    Ok(Certificate {
+    Certificate {
         makespan: durations().fold(0.0, f64::max),
         makespan_lower_bound: bounds.makespan,
         total: durations().sum(),
         total_lower_bound: bounds.total_cost,
-    })
+    }
 }

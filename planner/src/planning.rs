@@ -76,7 +76,9 @@ const MOST_LIMITS: usize = 4;
 /// The plan in which given flights are flown.
 fn planned(airspace: &Airspace, flights: Vec<Flight>) -> Result<Plan, Error> {
     let Airspace { mission, orbits, ref envelope, .. } = *airspace;
-    let legs = fly_all(airspace, &flights)?;
+    let (legs, bounds) =
+        both(|| fly_all(airspace, &flights), || certificate::bounds(mission, orbits, envelope));
+    let (legs, bounds) = (legs?, bounds?);
     let found_leg_by_leg: Vec<f64> = legs.iter().map(|legs| legs.last().map_or(0.0, Leg::end_time)).collect();
     let legs = match mission.pipeline {
         Pipeline::Paper => legs,
@@ -92,7 +94,7 @@ fn planned(airspace: &Airspace, flights: Vec<Flight>) -> Result<Plan, Error> {
         })
         .collect();
     let circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
-    let certificate = certificate::certificate(mission, orbits, envelope, &vehicles)?;
+    let certificate = certificate::certificate(&bounds, &vehicles);
     let mut plan = Plan {
         circles,
         vehicles,
@@ -171,6 +173,14 @@ pub(crate) fn calibrated<'a>(
     TimeModel::new(acceleration, speed).in_wind(wind).calibrated(&solved)
 }
 
+/// Does two things; with the feature `rayon` side by side.
+fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    #[cfg(feature = "rayon")]
+    return rayon::join(a, b);
+    #[cfg(not(feature = "rayon"))]
+    (a(), b())
+}
+
 /// Does something for every route; with the feature `rayon` side by side. The first error in order counts, on any number of
 /// threads.
 pub(crate) fn for_all<T: Send, R: Send>(
@@ -189,7 +199,7 @@ pub(crate) fn for_all<T: Send, R: Send>(
 
 /// How many vehicles are needed where some fly longer than they can.
 fn more_vehicles(plan: &Plan, routing: &Routing, share: f64) -> Option<Warning> {
-    let needed = routing.fewest_routes(share * routing.longest(plan)?)?.len();
+    let needed = routing.enough_routes(share * routing.longest(plan)?)?;
     // A longest route that is badly balanced may be too long although there are vehicles enough.
     Some(Warning::MoreVehicles { needed: needed.max(1) })
 }
@@ -204,13 +214,15 @@ fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
     let least = shares.into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
     let unseen = least.filter(|&(_, share)| share < 1.0);
     warnings.extend(unseen.map(|(target, share)| Warning::OutOfView { target, share }));
-    for (vehicle, planned) in plan.vehicles.iter().enumerate() {
+    let sampler = plan.sampler(mission);
+    let energy = |vehicle: usize| Ok(sampler.as_ref().map_or(0.0, |sampler| sampler.energy(vehicle)));
+    let energies = for_all((0..plan.vehicles.len()).collect(), energy).unwrap_or_default();
+    for ((vehicle, planned), energy) in plan.vehicles.iter().enumerate().zip(energies) {
         let (duration, endurance) = (planned.duration(), mission.fleet.endurance);
         if duration > endurance {
             warnings.push(Warning::Endurance { vehicle, duration, endurance });
         }
         let usable = mission.fleet.vehicle.parameters().battery.usable_energy();
-        let energy = plan.energy(mission, vehicle).unwrap_or(0.0);
         if energy > usable {
             warnings.push(Warning::Battery { vehicle, energy, usable });
         }

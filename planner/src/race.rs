@@ -149,8 +149,7 @@ impl<'a> Race<'a> {
             && let Standing::Slower(_, before) | Standing::Solved(_, before) = &self.standings[index]
         {
             self.is_again[index] = true;
-            if outcome.as_ref().map_or(true, |draft| draft.time >= before.time)
-            {
+            if outcome.as_ref().map_or(true, |draft| draft.time >= before.time) {
                 return;
             }
         }

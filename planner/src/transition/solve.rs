@@ -408,8 +408,8 @@ impl<'a, F> Attempt<'a, F> {
     /// loses, or a sketch is good enough: an estimate, and no proof, because the problem is not convex.
     fn watch(&self, iteration: &Iteration, segments: usize) -> ControlFlow<()> {
         let Iteration { objective, lagrangian, mu, residuals, regularisation, .. } = *iteration;
-        let is_known = residuals.dual < NEARLY_STATIONARY
-            && (lagrangian - objective).abs() < NEARLY_EQUAL * objective;
+        let is_known =
+            residuals.dual < NEARLY_STATIONARY && (lagrangian - objective).abs() < NEARLY_EQUAL * objective;
         let loses = lagrangian - mu * GREATEST_BARRIER_COST * segments as f64 > self.to_beat;
         let is_sketched = self.detail == Detail::Sketch
             && mu < SKETCH_MU
