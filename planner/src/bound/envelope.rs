@@ -120,7 +120,7 @@ impl Envelope {
         if direct.distance >= distance {
             return direct.time.max(0.0) * ROUND_DOWN;
         }
-        let high = asymptote * (1.0 - 1e-9);
+        let (mut low, mut high) = (floor, asymptote * (1.0 - 1e-9));
         let widest = through(high);
         if widest.distance <= distance {
             let cruise = asymptote + tail;
@@ -129,10 +129,16 @@ impl Envelope {
             }
             return (widest.time + (distance - widest.distance) / cruise) * ROUND_DOWN;
         }
-        let peak = greatest_below([floor, high], [direct, widest].map(|it| it.distance - distance), |peak| {
-            through(peak).distance - distance
-        });
-        through(peak).time * ROUND_DOWN
+        // Bisection to the last bit or nearly so.
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if through(middle).distance < distance {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        through(low).time * ROUND_DOWN
     }
 
     /// The same from a speed of at most `from` to one of at most `to` (m/s over the ground, not negative): over a short way the slower end
@@ -144,13 +150,19 @@ impl Envelope {
                 if first < last { self.speeding_up(first, speed) } else { self.braking(speed, last) };
             Reach { time, distance: distance + tail * time }
         };
-        let (low, high) = (first.min(last), first.max(last));
-        let beyond = |speed: f64| one_way(speed).distance - distance;
-        if high >= self.asymptote() * (1.0 - 1e-9) || beyond(high) <= 0.0 {
+        let (mut low, mut high) = (first.min(last), first.max(last));
+        if high >= self.asymptote() * (1.0 - 1e-9) || one_way(high).distance <= distance {
             return self.least_time_with(tail, distance, from, to);
         }
-        let speed = greatest_below([low, high], [beyond(low), beyond(high)], beyond);
-        one_way(speed).time.max(0.0) * ROUND_DOWN
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if one_way(middle).distance < distance {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        one_way(low).time.max(0.0) * ROUND_DOWN
     }
 
     /// Fastest way from speed `from` up to `to >= from`.
@@ -224,34 +236,6 @@ impl Envelope {
             .map(|(sin, cos)| along(Vector2::new(cos, sin)))
             .fold(straight, f64::max)
     }
-}
-
-/// The greatest place, to the last bits, at which an increasing function is below 0, between one where it is and one where it is not,
-/// with its values there: false position with the Illinois rule (M. Dowell, P. Jarratt, BIT 11, 1971), with a bisection now and then.
-fn greatest_below(
-    [mut low, mut high]: [f64; 2],
-    [mut below, mut above]: [f64; 2],
-    f: impl Fn(f64) -> f64,
-) -> f64 {
-    let mut side = 0;
-    for step in 1..=60 {
-        if high - low <= 1e-13 * high.abs() {
-            break;
-        }
-        let share = if step % 4 == 0 { 0.5 } else { below / (below - above) };
-        let middle = low + (high - low) * share.clamp(1e-3, 0.999);
-        let value = f(middle);
-        if value < 0.0 {
-            (low, below) = (middle, value);
-            above *= if side < 0 { 0.5 } else { 1.0 };
-            side = -1;
-        } else {
-            (high, above) = (middle, value);
-            below *= if side > 0 { 0.5 } else { 1.0 };
-            side = 1;
-        }
-    }
-    low
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! | first trajectories | `guess.rs` |
 //! | long flights, sketched without their middle | `cruise.rs` |
 //! | solving, and solving again with what was overstepped put farther away | `solve.rs` |
+//! | what gets stricter from one solve to the next | `setting.rs` |
 //! | looking at the result between the knots, without the solver | `examine.rs` |
 
 mod cruise;
@@ -15,6 +16,7 @@ mod flight;
 mod guess;
 mod models;
 mod problem;
+mod setting;
 mod solve;
 
 pub(crate) use examine::{Examination, Path, miss};

@@ -4,6 +4,7 @@ use super::examine::{Examination, examine, miss};
 use super::flight::Flight;
 use super::guess::{bent, guess};
 use super::problem::{Goal, KeepOut, MinimumTime};
+use super::setting::Setting;
 use crate::mission::{Transcription, TransitionSettings};
 use crate::plan::{Entry, Miss, Outcome, SolverStatus, Transition};
 use quad_dynamics::Motion;
@@ -11,10 +12,6 @@ use std::any::Any;
 use std::ops::ControlFlow;
 use traj_opt::{Guess, Iteration, Mesh, Options, Solution, Status, Workspace};
 
-/// Misses (m, m/s, rad) above this are worth a finer integration inside the transcription: a tenth of what is tolerated.
-const GOOD_MISS: Miss = Miss { position: 0.005, velocity: 0.005, attitude: 0.002 };
-/// Overstepping of heights and limits between knots that is worth another solve (m, rad/s, share of a limit).
-const GOOD_BOUND: f64 = 0.002;
 /// Solves of one transition with enlarged keep-outs, narrowed heights or finer steps.
 const ROUNDS: usize = 6;
 /// The same while a keep-out is still entered: they are considered one by one as they are entered.
@@ -32,8 +29,6 @@ const SKETCH_SHARE: f64 = 0.35;
 const LONGEST_SKETCH_STEP: f64 = 2.0;
 /// The least segments of a sketch.
 const LEAST_SEGMENTS: usize = 10;
-/// By how much a step is shorter than what the miss of the one before asks for.
-const SAFETY: f64 = 1.2;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
 
@@ -186,14 +181,6 @@ enum First<const NX: usize, const NU: usize> {
     Solution(Box<Solution<NX, NU>>),
 }
 
-/// What may change from one solve of a transition to the next.
-struct Setting {
-    keep_outs: Vec<KeepOut>,
-    heights: [f64; 2],
-    longest_step: f64,
-    segments: usize,
-}
-
 /// What is known of a transition before it is solved.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Hint<'a> {
@@ -256,16 +243,12 @@ impl<'a, F> Attempt<'a, F> {
     where
         F: Flight<NX, NU>,
     {
-        let setting = Setting {
-            keep_outs,
-            heights: self.surroundings.heights,
-            longest_step: self.longest_step,
-            segments: self.segments,
-        };
+        let (heights, longest_step, segments) = (self.surroundings.heights, self.longest_step, self.segments);
+        let setting = Setting { keep_outs, heights, longest_step, segments };
         let mut solved = self.solved(First::Guess(first), setting)?;
         for _ in 1..MOST_ROUNDS {
             let Solved { ref mut setting, ref seen, .. } = solved;
-            if !seen.is_some_and(|seen| self.put_farther(setting, &seen)) {
+            if !seen.is_some_and(|seen| setting.put_farther(self.surroundings, &seen)) {
                 return Ok(solved);
             }
             solved = self.solved(First::Solution(Box::new(solved.solution)), solved.setting)?;
@@ -285,7 +268,7 @@ impl<'a, F> Attempt<'a, F> {
             let Solved { solution, mut setting, transition, seen, .. } = solved;
             let Some(seen) = seen else { return Err(unsolved(&solution)) };
             let segments = setting.segments;
-            let stricter = self.adjust(&mut setting, &transition, &seen);
+            let stricter = setting.adjust(self.surroundings, 4 * self.segments, &transition, &seen);
             if !stricter || (round >= ROUNDS && seen.clearance >= 0.0) {
                 return Ok(transition);
             }
@@ -326,40 +309,6 @@ impl<'a, F> Attempt<'a, F> {
         Ok(Solved { solution, setting, transition, time, seen: Some(seen) })
     }
 
-    /// Puts the keep-out that is entered farthest away; false if none is entered.
-    fn put_farther(&self, setting: &mut Setting, seen: &Examination) -> bool {
-        match seen.closest {
-            Some(closest) if seen.clearance < 0.0 => {
-                enlarge(&mut setting.keep_outs, self.surroundings.keep_outs[closest], -seen.clearance);
-                true
-            }
-            _ => false,
-        }
-    }
-
-    /// Makes the setting stricter where the examination saw something overstepped; false if there was nothing.
-    fn adjust(&self, setting: &mut Setting, transition: &Transition, seen: &Examination) -> bool {
-        let mut again = self.put_farther(setting, seen);
-        // A collocation scheme is judged by its own equations, and its miss is what the caller asked to see.
-        if self.surroundings.settings.transcription != Transcription::RungeKutta {
-            return again;
-        }
-        if seen.height_violation > GOOD_BOUND {
-            setting.heights = narrowed(setting.heights, self.surroundings.heights, seen.height_violation);
-            again = true;
-        }
-        if seen.limit_violation > GOOD_BOUND && setting.segments < 4 * self.segments {
-            // Between knots a limit is overstepped by the square of their distance.
-            setting.segments *= 2;
-            again = true;
-        }
-        if !within(&transition.miss, &GOOD_MISS) {
-            setting.longest_step = finer_step(transition, setting);
-            again = true;
-        }
-        again
-    }
-
     fn solve<const NX: usize, const NU: usize>(
         &self,
         first: &First<NX, NU>,
@@ -368,7 +317,7 @@ impl<'a, F> Attempt<'a, F> {
     where
         F: Flight<NX, NU>,
     {
-        let Setting { ref keep_outs, heights, longest_step, segments } = *setting;
+        let Setting { ref keep_outs, heights, segments, .. } = *setting;
         let problem =
             MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
         let mut options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
@@ -377,7 +326,7 @@ impl<'a, F> Attempt<'a, F> {
         let watch = |iteration: &Iteration| self.watch(iteration, segments);
         let transcription = |uniform: f64| match self.surroundings.settings.transcription {
             Transcription::RungeKutta => {
-                traj_opt::Transcription::RungeKutta { substeps: substeps(uniform, longest_step) }
+                traj_opt::Transcription::RungeKutta { substeps: setting.substeps(uniform) }
             }
             Transcription::HermiteSimpson => traj_opt::Transcription::HermiteSimpson,
             Transcription::Trapezoidal => traj_opt::Transcription::Trapezoidal,
@@ -457,22 +406,6 @@ fn unsolved<const NX: usize, const NU: usize>(solution: &Solution<NX, NU>) -> Un
     }
 }
 
-/// Runge-Kutta steps a segment, where segments last `uniform` (s) on average; the longest about half as long again.
-fn substeps(uniform: f64, longest_step: f64) -> usize {
-    (1.5 * uniform / longest_step).ceil().clamp(1.0, 64.0) as usize
-}
-
-/// The longest Runge-Kutta step (s) with which the integrated controls should lead where they must: the miss falls with the fourth
-/// power of the step. At least one step more for each segment.
-fn finer_step(transition: &Transition, setting: &Setting) -> f64 {
-    let uniform = transition.duration / setting.segments as f64;
-    let step = 1.5 * uniform / substeps(uniform, setting.longest_step) as f64;
-    let Miss { position, velocity, attitude } = transition.miss;
-    let excess =
-        (position / GOOD_MISS.position).max(velocity / GOOD_MISS.velocity).max(attitude / GOOD_MISS.attitude);
-    step / (SAFETY * excess.max(1.0).powf(0.25))
-}
-
 /// The solution as it stands in the plan, without what only an examination can tell.
 fn record<const NX: usize, const NU: usize, F: Flight<NX, NU>>(solution: &Solution<NX, NU>) -> Transition {
     Transition {
@@ -502,25 +435,4 @@ fn complete(transition: &mut Transition, seen: &Examination, miss: Miss) {
     transition.max_speed = seen.max_speed;
     transition.max_tilt = seen.max_tilt;
     transition.miss = miss;
-}
-
-fn within(miss: &Miss, tolerance: &Miss) -> bool {
-    miss.position <= tolerance.position
-        && miss.velocity <= tolerance.velocity
-        && miss.attitude <= tolerance.attitude
-}
-
-/// Pushes one keep-out's boundary outwards by what it was entered, and a little more; adds it if it was not considered.
-fn enlarge(keep_outs: &mut Vec<KeepOut>, entered: KeepOut, by: f64) {
-    let margin = 1.3 * by + 0.01;
-    match keep_outs.iter_mut().find(|keep_out| keep_out.centre == entered.centre) {
-        Some(keep_out) => keep_out.radius += margin,
-        None => keep_outs.push(KeepOut { radius: entered.radius + margin, ..entered }),
-    }
-}
-
-/// Height limits drawn in by what was overstepped, but never by more than a tenth of their range.
-fn narrowed(heights: [f64; 2], wanted: [f64; 2], by: f64) -> [f64; 2] {
-    let most = 0.1 * (wanted[1] - wanted[0]);
-    [(heights[0] + by).min(wanted[0] + most), (heights[1] - by).max(wanted[1] - most)]
 }

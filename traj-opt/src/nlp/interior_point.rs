@@ -22,8 +22,6 @@ const KAPPA_MU: f64 = 0.1;
 const THETA_MU: f64 = 1.7;
 const TAU_MIN: f64 = 0.99;
 const S_MAX: f64 = 100.0;
-/// Weight of the primal residual in the barrier error: where the multipliers are right, feasibility need not be waited for.
-const PRIMAL_WEIGHT: f64 = 0.1;
 /// Penalty on end conditions in the recursion, relative to the scaled length of their gradients.
 const RHO: f64 = 1e3;
 /// Range of the damping relative to the squared scales of the variables.
@@ -230,7 +228,8 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             };
             self.log.push(entry);
             let finish = |status| Outcome { status, iterations: iteration, residuals };
-            let worst = worst_of(&residuals);
+            // a point of infinite cost is no solution, whatever the tolerance
+            let worst = if entry.objective.is_finite() { worst_of(&residuals) } else { f64::INFINITY };
             if worst <= options.tolerance {
                 return finish(Status::Solved);
             }
@@ -283,7 +282,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     fn update_barrier(&mut self, options: &Options, mut residuals: Residuals) {
         let least = options.tolerance / 10.0 * self.objective_scale;
         let scale = self.multiplier_scale() * self.objective_scale;
-        residuals.primal *= PRIMAL_WEIGHT;
         while self.mu > least {
             residuals.complementarity = self.bounds.complementarity(&self.w, self.mu) / scale;
             if worst_of(&residuals) > KAPPA_EPSILON * self.mu / self.objective_scale {
