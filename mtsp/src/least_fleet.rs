@@ -23,7 +23,7 @@ pub struct LeastFleet {
 
 /// Routes within the limit for as few of the problem's vehicles as possible, then as good as the budget allows for that many.
 ///
-/// All vehicles are tried first, then fewer by bisection. Each attempt minimises the makespan and stops once the limit is kept; the routes
+/// Twice as many vehicles as are proven necessary are tried first, and all if those do not suffice; then fewer by bisection. Each attempt minimises the makespan and stops once the limit is kept; the routes
 /// of the last success are improved for the objective of `options`.
 ///
 /// # Arguments
@@ -56,8 +56,11 @@ pub fn least_fleet<M: Metric>(problem: &Problem<'_, M>, options: &Options) -> Re
     if !problem.is_homogeneous() {
         return Err(Error::VehiclesDiffer);
     }
-    let mut routes = within_limit(problem, options)?;
-    let mut at_least = proven(problem, routes.len());
+    let mut at_least = proven(problem);
+    let likely = at_least.saturating_mul(2).min(problem.vehicles());
+    let mut routes = within_limit(&problem.with_first_vehicles(likely), options)
+        .or_else(|_| within_limit(problem, options))?;
+    at_least = at_least.min(routes.len());
     // No search with fewer than this has succeeded: proven up to `at_least`, believed from there.
     let mut low = at_least;
     while low < routes.len() {
@@ -91,8 +94,9 @@ fn within_limit<M: Metric>(problem: &Problem<'_, M>, options: &Options) -> Resul
     Ok(found.routes.into_iter().filter(|route| !route.is_empty()).collect())
 }
 
-/// A number of vehicles, at most `vehicles`, below which the total cost does not fit the limits; at least one for any target.
-fn proven<M: Metric>(problem: &Problem<'_, M>, vehicles: usize) -> usize {
+/// A number of vehicles below which the total cost does not fit the limits; at least one for any target.
+fn proven<M: Metric>(problem: &Problem<'_, M>) -> usize {
+    let vehicles = problem.vehicles().min(problem.targets().len());
     let (total, limit) = (lower_bound::both(problem).total_cost, problem.limit(0));
     (1.min(vehicles)..vehicles).find(|&k| total <= k as f64 * limit).unwrap_or(vehicles)
 }

@@ -14,6 +14,7 @@ use crate::sorties::{self, Flight, share_in_reach};
 use crate::time_model::TimeModel;
 use crate::transition::Pilot;
 use crate::whole_route::Flown;
+use mtsp::lower_bound::LowerBounds;
 
 /// Plans a mission.
 ///
@@ -34,7 +35,8 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     let envelope = envelope(mission, &orbits);
     let pads = mission.pads();
     let routing = Routing::new(mission, &orbits, &envelope, options);
-    let routes = allocation::to_pads(routing.routes()?, &pads, &orbits, mission.depot);
+    let (routes, bounds) = both(|| routing.routes(), || certificate::bounds(mission, &orbits, &envelope));
+    let (routes, bounds) = (allocation::to_pads(routes?, &pads, &orbits, mission.depot), bounds?);
     let flights = sorties::one_each(&pads, routes);
     let airspace = |flights: &[Flight]| {
         let mut airspace = Airspace {
@@ -48,7 +50,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         airspace.watch = Watch::new(*options, total);
         airspace
     };
-    let mut plan = planned(&airspace(&flights), flights)?;
+    let mut plan = planned(&airspace(&flights), flights, &bounds)?;
     let mut share = share_in_reach(&plan);
     if share < 1.0 && mission.swap_time.is_some() {
         let mut limit = routing.longest(&plan).unwrap_or(0.0);
@@ -56,7 +58,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         for _ in 0..MOST_LIMITS {
             limit *= share;
             let Some(flights) = sorties::share_out(mission, &orbits, &routing, limit) else { break };
-            plan = planned(&airspace(&flights), flights)?;
+            plan = planned(&airspace(&flights), flights, &bounds)?;
             share = share_in_reach(&plan);
             if share >= 1.0 {
                 break;
@@ -74,11 +76,9 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
 const MOST_LIMITS: usize = 4;
 
 /// The plan in which given flights are flown.
-fn planned(airspace: &Airspace, flights: Vec<Flight>) -> Result<Plan, Error> {
-    let Airspace { mission, orbits, ref envelope, .. } = *airspace;
-    let (legs, bounds) =
-        both(|| fly_all(airspace, &flights), || certificate::bounds(mission, orbits, envelope));
-    let (legs, bounds) = (legs?, bounds?);
+fn planned(airspace: &Airspace, flights: Vec<Flight>, bounds: &LowerBounds) -> Result<Plan, Error> {
+    let Airspace { mission, orbits, .. } = *airspace;
+    let legs = fly_all(airspace, &flights)?;
     let found_leg_by_leg: Vec<f64> = legs.iter().map(|legs| legs.last().map_or(0.0, Leg::end_time)).collect();
     let legs = match mission.pipeline {
         Pipeline::Paper => legs,
@@ -94,7 +94,7 @@ fn planned(airspace: &Airspace, flights: Vec<Flight>) -> Result<Plan, Error> {
         })
         .collect();
     let circles = orbits.iter().map(|orbit| orbit.circle.clone()).collect();
-    let certificate = certificate::certificate(&bounds, &vehicles);
+    let certificate = certificate::certificate(bounds, &vehicles);
     let mut plan = Plan {
         circles,
         vehicles,
