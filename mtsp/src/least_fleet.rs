@@ -23,8 +23,9 @@ pub struct LeastFleet {
 
 /// Routes within the limit for as few of the problem's vehicles as possible, then as good as the budget allows for that many.
 ///
-/// Twice as many vehicles as are proven necessary are tried first, and all if those do not suffice; then fewer by bisection. Each attempt minimises the makespan and stops once the limit is kept; the routes
-/// of the last success are improved for the objective of `options`.
+/// Twice as many vehicles as are proven necessary are tried first, and all if those do not suffice; then fewer by bisection. Each
+/// attempt minimises the makespan and stops once the limit is kept; the routes of the last success are improved for the objective of
+/// `options`.
 ///
 /// # Arguments
 /// * `problem`: interchangeable vehicles, at most as many as wanted; as many as targets never is too few.
@@ -57,12 +58,18 @@ pub fn least_fleet<M: Metric>(problem: &Problem<'_, M>, options: &Options) -> Re
         return Err(Error::VehiclesDiffer);
     }
     let mut at_least = proven(problem);
-    let likely = at_least.saturating_mul(2).min(problem.vehicles());
-    let mut routes = within_limit(&problem.with_first_vehicles(likely), options)
-        .or_else(|_| within_limit(problem, options))?;
-    at_least = at_least.min(routes.len());
     // No search with fewer than this has succeeded: proven up to `at_least`, believed from there.
     let mut low = at_least;
+    let likely = at_least.saturating_mul(2).min(problem.vehicles());
+    let mut routes = match within_limit(&problem.with_first_vehicles(likely), options) {
+        Err(Error::LimitsTooSmall { .. } | Error::LimitsNotMet { .. }) if likely < problem.vehicles() => {
+            low = likely + 1;
+            within_limit(problem, options)?
+        }
+        found => found?,
+    };
+    // rounding in the sum of the lengths must not prove more than was found
+    at_least = at_least.min(routes.len());
     while low < routes.len() {
         let tried = low.midpoint(routes.len());
         let fewer = problem.with_first_vehicles(tried);

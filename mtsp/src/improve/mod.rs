@@ -94,9 +94,19 @@ pub fn solve_from<M: Metric>(
     proceed: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Solution, Error> {
     check_distances(problem)?;
-    check(problem, &routes)?;
+    let given = check(problem, &routes)?;
     let bounds = feasible_bounds(problem, options)?;
-    run(problem, Some(routes), bounds, options, proceed)
+    let found = run(problem, Some(routes.clone()), bounds, options, proceed)?;
+    let before = match options.objective {
+        Objective::Total => given.total_cost,
+        Objective::Makespan => given.makespan,
+    };
+    // a search adds lengths up in another order, and may take a reversed route that is longer by rounding
+    if found.value(options.objective) > before {
+        Solution::with_bounds(problem, routes, bounds)
+    } else {
+        Ok(found)
+    }
 }
 
 /// Refuses distances that are not finite or negative; only as many as will be stored are looked at.
