@@ -5,7 +5,7 @@ use crate::bound::Envelope;
 use crate::certificate;
 use crate::circles::{Orbit, orbits};
 use crate::error::{Error, Problem};
-use crate::legs::Airspace;
+use crate::legs::{Airspace, side_by_side};
 use crate::mission::{Mission, Model, Pipeline};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
@@ -215,8 +215,9 @@ fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
     let unseen = least.filter(|&(_, share)| share < 1.0);
     warnings.extend(unseen.map(|(target, share)| Warning::OutOfView { target, share }));
     let sampler = plan.sampler(mission);
-    let energy = |vehicle: usize| Ok(sampler.as_ref().map_or(0.0, |sampler| sampler.energy(vehicle)));
-    let energies = for_all((0..plan.vehicles.len()).collect(), energy).unwrap_or_default();
+    let vehicles: Vec<usize> = (0..plan.vehicles.len()).collect();
+    let energies =
+        side_by_side(&vehicles, |&vehicle| sampler.as_ref().map_or(0.0, |sampler| sampler.energy(vehicle)));
     for ((vehicle, planned), energy) in plan.vehicles.iter().enumerate().zip(energies) {
         let (duration, endurance) = (planned.duration(), mission.fleet.endurance);
         if duration > endurance {

@@ -45,6 +45,10 @@ impl Dynamics<4, 2> for Flight {
     }
 }
 
+/// A rise inside the cone of positions.
+const RISE: Flight =
+    Flight { start: [0.0, 0.5], velocity: 0.0, end: [3.0, 5.5], drag: 0.2, slope: Some(0.6), smooth: false };
+
 impl Problem<4, 2> for Flight {
     type Dynamics = Self;
 
@@ -112,15 +116,7 @@ fn both(mut flight: Flight, scheme: Transcription, n: usize) -> (f64, Solution<4
 #[test]
 fn it_reaches_the_value_of_the_interior_point_method_with_every_transcription() {
     for scheme in SCHEMES {
-        let flight = Flight {
-            start: [0.0, 0.5],
-            velocity: 0.0,
-            end: [3.0, 5.5],
-            drag: 0.2,
-            slope: Some(0.6),
-            smooth: false,
-        };
-        agrees(flight, scheme);
+        agrees(RISE, scheme);
     }
 }
 
@@ -296,30 +292,21 @@ fn a_soft_landing_has_its_exact_value_and_the_relaxed_thrust_is_lossless() {
 
 #[test]
 fn it_can_be_stopped_refuses_bad_options_and_names_what_is_infeasible() {
-    let flight = Flight {
-        start: [0.0, 0.5],
-        velocity: 0.0,
-        end: [3.0, 5.5],
-        drag: 0.2,
-        slope: Some(0.6),
-        smooth: false,
-    };
-    let (mesh, scheme, guess) = (Mesh::uniform(8), Transcription::Trapezoidal, line(&flight));
+    let (mesh, scheme, guess) = (Mesh::uniform(8), Transcription::Trapezoidal, line(&RISE));
     let options = ConicOptions::default();
     let stop = |entry: &traj_opt::Iteration| match entry.iteration {
         2 => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
-    let s = solve_conic_with(&flight, &mesh, scheme, &guess, &options, stop).unwrap();
+    let s = solve_conic_with(&RISE, &mesh, scheme, &guess, &options, stop).unwrap();
     assert_eq!((s.status, s.iterations), (Status::Stopped, 2));
     let bad = options.clone().with_trust_radius(0.0);
-    assert!(matches!(solve_conic(&flight, &mesh, scheme, &guess, &bad), Err(Error::InvalidOption { .. })));
-    let shapeless = Flight { slope: Some(f64::NAN), ..flight };
+    assert!(matches!(solve_conic(&RISE, &mesh, scheme, &guess, &bad), Err(Error::InvalidOption { .. })));
+    let shapeless = Flight { slope: Some(f64::NAN), ..RISE };
     let refused = solve_conic(&shapeless, &mesh, scheme, &guess, &options);
     assert_eq!(refused.unwrap_err(), Error::NonFiniteCone { cone: 1 });
-    let flight = Flight { slope: Some(0.6), ..shapeless };
     // an end outside the cone of positions
-    let outside = Flight { end: [5.0, 5.5], ..flight };
+    let outside = Flight { end: [5.0, 5.5], ..RISE };
     let s = solve_conic(&outside, &mesh, scheme, &line(&outside), &options).unwrap();
     assert_eq!(s.status, Status::Infeasible, "{:?}", s.residuals);
     let found = s.diagnosis.unwrap();
