@@ -118,7 +118,7 @@ impl Airspace<'_> {
     /// The transition to one entry of a circle.
     fn to_entry(&self, here: &Motion, orbit: &Orbit, entry: Entry) -> (Option<Arrival>, Vec<Candidate>) {
         let there = orbit.at(entry);
-        let hint = Hint::Time(self.envelope.least_time_between(here, &there));
+        let hint = Hint::Time(self.least_time(here, &there));
         let solved = self.pilot.fly(here, Goal::Motion(there), &there, hint);
         let mut candidates = vec![Candidate { entry: Some(entry), outcome: outcome_of(&solved) }];
         let arrival = solved.ok().map(|transition| Arrival { entry, transition });

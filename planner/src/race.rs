@@ -9,12 +9,14 @@ use crate::transition::{Detail, Draft, Unsolved};
 const MARGIN: [f64; 2] = [0.03, 0.002];
 
 /// What an entry that is not sketched is expected to take longer than its bound, as a share of the least such excess that the
-/// sketches of its leg show: the excess differs little along a leg.
-const EXPECTED_SHARE: f64 = 0.5;
+/// sketches of its leg show, and at most so much (s): along a short leg the excess differs little; along a long one it is great where
+/// the bounds are loose, and the entries that are sketched first are just those.
+const EXPECTED_SHARE: f64 = 0.7;
+const MOST_EXPECTED: f64 = 0.5;
 
-/// A sketch whose excess over its bound is more than so many times the least of its leg, and so many seconds, may be caught in a
-/// local minimum.
-const ODD: (f64, f64) = (2.0, 0.1);
+/// A sketch that exceeds its bound by so much (s) more than a neighbour's does is caught in a local minimum that the neighbour has not
+/// met, a turn the other way round for example: along a circle the excess changes slowly as long as the flights are alike.
+const JUMP: f64 = 0.1;
 
 /// The candidate that is flown.
 pub(crate) struct Arrival {
@@ -43,7 +45,7 @@ pub(crate) struct Race<'a> {
     standings: Vec<Standing>,
     /// Times of complete sketches (s), infinite where there is none or the candidate has failed.
     sketched: Vec<f64>,
-    /// Which candidates were sketched again, from a guess of their own.
+    /// Which candidates were sketched again, from a better neighbour's trajectory.
     is_again: Vec<bool>,
     best: Option<Arrival>,
     /// Whether every candidate is drafted to the end and polished.
@@ -89,18 +91,23 @@ impl<'a> Race<'a> {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.transition.duration)
     }
 
-    /// Whether a sketch may be caught in a local minimum to which its neighbour's trajectory has led, and could else win.
-    fn is_odd(&self, index: usize, to_beat: f64) -> bool {
+    /// The neighbour from whose trajectory a sketch should be made again, if that could be faster than what it has to beat (s).
+    fn better_neighbour(&self, index: usize, to_beat: f64) -> Option<&Draft> {
         let (Standing::Slower(Detail::Sketch, draft) | Standing::Solved(Detail::Sketch, draft)) =
             &self.standings[index]
         else {
-            return false;
+            return None;
         };
-        let excess = draft.time - self.entrances[index].lower_bound;
-        !self.exhaustive
-            && !self.is_again[index]
-            && excess > ODD.0 * self.least_excess() + ODD.1
-            && self.expected(index) < to_beat
+        let Entrance { entry, lower_bound } = self.entrances[index];
+        if self.exhaustive || self.is_again[index] {
+            return None;
+        }
+        let better = |excess: f64| lower_bound + excess + JUMP < draft.time && lower_bound + excess < to_beat;
+        self.neighbours(entry)
+            .map(|(other, theirs)| (theirs.time - other.lower_bound, theirs))
+            .filter(|(excess, _)| better(*excess))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, theirs)| theirs)
     }
 
     /// Whether a candidate should be solved at a detail, given what it has to beat there (s).
@@ -109,9 +116,11 @@ impl<'a> Race<'a> {
             (Standing::Open, Detail::Sketch) => self.expected(index) < to_beat,
             (Standing::Unsketched, Detail::Full) => self.entrances[index].lower_bound < to_beat,
             (Standing::Slower(given_up, draft), _) if *given_up == detail => {
-                draft.time < to_beat || self.is_odd(index, to_beat)
+                draft.time < to_beat || self.better_neighbour(index, to_beat).is_some()
             }
-            (Standing::Solved(Detail::Sketch, _), Detail::Sketch) => self.is_odd(index, to_beat),
+            (Standing::Solved(Detail::Sketch, _), Detail::Sketch) => {
+                self.better_neighbour(index, to_beat).is_some()
+            }
             (Standing::Solved(Detail::Sketch, draft), Detail::Full) => {
                 draft.time < self.to_beat(Detail::Sketch)
             }
@@ -129,7 +138,7 @@ impl<'a> Race<'a> {
 
     /// What a candidate that has not been sketched is expected to take at least (s); its lower bound in an exhaustive race.
     fn expected(&self, index: usize) -> f64 {
-        self.entrances[index].lower_bound + EXPECTED_SHARE * self.least_excess()
+        self.entrances[index].lower_bound + (EXPECTED_SHARE * self.least_excess()).min(MOST_EXPECTED)
     }
 
     /// The candidates by ascending time of their trajectories or, where there is none, lower bound; ties by index.
@@ -203,33 +212,34 @@ impl<'a> Race<'a> {
         };
     }
 
-    /// What a solve at some detail starts from: a candidate's own trajectory, or else that of a neighbour; `None` for a guess.
+    /// What a solve at some detail starts from: a better neighbour's trajectory, a candidate's own, or else that of the nearest
+    /// neighbour; `None` for a guess.
     pub(crate) fn trajectory(&self, index: usize, detail: Detail, to_beat: f64) -> Option<&Transition> {
-        match &self.standings[index] {
-            _ if detail == Detail::Sketch && self.is_odd(index, to_beat) => None,
-            Standing::Slower(_, draft) | Standing::Solved(_, draft) => Some(&draft.transition),
-            _ => self.neighbour(self.entrances[index].entry),
-        }
+        let better = match detail {
+            Detail::Sketch => self.better_neighbour(index, to_beat),
+            Detail::Full => None,
+        };
+        let own = || match &self.standings[index] {
+            Standing::Slower(_, draft) | Standing::Solved(_, draft) => Some(draft),
+            _ => None,
+        };
+        let entry = self.entrances[index].entry;
+        let apart = |other: &Entrance| apart(other.entry.angle, entry.angle);
+        let nearest = || self.neighbours(entry).min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
+        let draft = better.or_else(own).or_else(|| nearest().map(|(_, draft)| draft));
+        draft.map(|draft| &draft.transition)
     }
 
-    /// The trajectory whose entry is next to `entry` on the circle, in the same direction, up to an eighth of a turn
-    /// away.
-    fn neighbour(&self, entry: Entry) -> Option<&Transition> {
-        let apart = |other: Entry| {
-            let turn = (other.angle - entry.angle).rem_euclid(std::f64::consts::TAU);
-            turn.min(std::f64::consts::TAU - turn)
+    /// The solved candidates whose entries lie up to an eighth of a turn from `entry`, in the same direction.
+    fn neighbours(&self, entry: Entry) -> impl Iterator<Item = (&Entrance, &Draft)> {
+        let is_near = move |other: Entry| {
+            other.direction == entry.direction
+                && apart(other.angle, entry.angle) <= std::f64::consts::FRAC_PI_4 + 1e-9
         };
-        let drafts =
-            self.entrances.iter().zip(&self.standings).filter_map(|(entrance, standing)| match standing {
-                Standing::Solved(_, draft) => Some((entrance.entry, &draft.transition)),
-                _ => None,
-            });
-        drafts
-            .filter(|(other, _)| other.direction == entry.direction)
-            .map(|(other, transition)| (apart(other), transition))
-            .filter(|(apart, _)| *apart <= std::f64::consts::FRAC_PI_4 + 1e-9)
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, transition)| transition)
+        self.entrances.iter().zip(&self.standings).filter_map(move |(entrance, standing)| match standing {
+            Standing::Solved(_, draft) if is_near(entrance.entry) => Some((entrance, draft)),
+            _ => None,
+        })
     }
 
     /// The best that can be flown, and what became of every candidate.
@@ -256,4 +266,10 @@ impl<'a> Race<'a> {
         let candidates = candidates.collect();
         (self.best, candidates)
     }
+}
+
+/// The angle between two directions (rad).
+fn apart(a: f64, b: f64) -> f64 {
+    let turn = (a - b).rem_euclid(std::f64::consts::TAU);
+    turn.min(std::f64::consts::TAU - turn)
 }

@@ -20,6 +20,8 @@ const MOST_ROUNDS: usize = 16;
 const TOLERANCE: f64 = 3e-6;
 /// First barrier parameter: the guesses meet both ends, and this takes half as many iterations as the solver's own 0.1.
 const FIRST_MU: f64 = 0.01;
+/// Barrier parameter of a solve from a solution with little changed: the last one, too.
+const WARM_MU: f64 = TOLERANCE / 3.0;
 /// Longest Runge-Kutta step of a first solve (s). Segments are short where the attitude turns, so that even the longest flights
 /// take as long as with fine steps to 2e-4 of their time: enough to see that a candidate loses.
 const LONGEST_FIRST_STEP: f64 = 1.0;
@@ -36,11 +38,12 @@ const OUTER_SEGMENT: f64 = 0.06;
 /// Lagrangian then is from the cost at most; with ten times as much one of fifty legs took a slower entry.
 const NEARLY_STATIONARY: f64 = 3e-4;
 const NEARLY_EQUAL: f64 = 1e-4;
-/// Greatest barrier parameter of a sketch that is good enough, and greatest primal residual.
+/// Greatest barrier parameters of sketches and drafts that are good enough, and greatest primal residual, in barrier parameters.
 const SKETCH_MU: f64 = 1e-3;
-const SKETCH_PRIMAL: f64 = 2e-2;
-/// Greatest regularisation with which a sketch is good enough: with more, directions are left along which the time still falls.
-const SKETCH_REGULARISATION: f64 = 1e-4;
+const DRAFT_MU: f64 = 1e-5;
+const ENOUGH_PRIMAL: f64 = 20.0;
+/// Greatest regularisation with which they are: with more, directions are left along which the time still falls.
+const ENOUGH_REGULARISATION: f64 = 1e-4;
 /// What a segment's bounds, on controls and height, cost in a barrier problem, in barrier parameters (s): as seen, and at most.
 const BARRIER_COST: f64 = 1.4;
 const GREATEST_BARRIER_COST: f64 = 2.5;
@@ -171,7 +174,8 @@ pub(crate) fn polish<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     surroundings: &Surroundings,
 ) -> Result<Transition, Unsolved> {
     let Ok(solved) = draft.solved.downcast::<Solved<NX, NU>>() else { return Err(Unsolved::NOTHING) };
-    Attempt::new(flight, start, goal, surroundings, Detail::Full, f64::INFINITY).mend(*solved)
+    let attempt = Attempt::new(flight, start, goal, surroundings, Detail::Full, f64::INFINITY);
+    Attempt { enough_mu: None, ..attempt }.mend(*solved)
 }
 
 /// Where a solve starts: at a trajectory, or at a solution on the same mesh with its multipliers. The latter only pays where
@@ -195,7 +199,8 @@ struct Attempt<'a, F> {
     start: &'a Motion,
     goal: Goal<'a>,
     surroundings: &'a Surroundings<'a>,
-    detail: Detail,
+    /// Greatest barrier parameter with which a solve may end early; `None` to solve to the end.
+    enough_mu: Option<f64>,
     to_beat: f64,
     segments: usize,
     longest_step: f64,
@@ -211,13 +216,13 @@ impl<'a, F> Attempt<'a, F> {
         to_beat: f64,
     ) -> Self {
         let all = surroundings.settings.segments;
-        let (segments, longest_step) = match detail {
-            Detail::Full => (all, LONGEST_FIRST_STEP),
-            Detail::Sketch => {
-                ((SKETCH_SHARE * all as f64).round().max(LEAST_SEGMENTS as f64) as usize, LONGEST_SKETCH_STEP)
-            }
+        let few = (SKETCH_SHARE * all as f64).round().max(LEAST_SEGMENTS as f64) as usize;
+        let (enough_mu, segments, longest_step) = match detail {
+            Detail::Full => (DRAFT_MU, all, LONGEST_FIRST_STEP),
+            Detail::Sketch => (SKETCH_MU, few, LONGEST_SKETCH_STEP),
         };
-        Self { flight, start, goal, surroundings, detail, to_beat, segments, longest_step }
+        let enough_mu = Some(enough_mu);
+        Self { flight, start, goal, surroundings, enough_mu, to_beat, segments, longest_step }
     }
 
     /// The keep-outs that a sensible flight may touch: those near the straight line. One that is entered all the same is
@@ -269,7 +274,8 @@ impl<'a, F> Attempt<'a, F> {
             let Some(seen) = seen else { return Err(unsolved(&solution)) };
             let segments = setting.segments;
             let stricter = setting.adjust(self.surroundings, 4 * self.segments, &transition, &seen);
-            if !stricter || (round >= ROUNDS && seen.clearance >= 0.0) {
+            let to_the_end = solution.status == Status::Stopped;
+            if !(stricter || to_the_end) || (round >= ROUNDS && seen.clearance >= 0.0) {
                 return Ok(transition);
             }
             let first = if setting.segments == segments {
@@ -292,7 +298,7 @@ impl<'a, F> Attempt<'a, F> {
         F: Flight<NX, NU>,
     {
         let solution = self.solve(&first, &setting).ok_or(Unsolved::NOTHING)?;
-        // Stopped is a candidate that loses, or a sketch that is good enough.
+        // Stopped is a candidate that loses, or one that is good enough to be compared.
         if !solution.status.is_success() && solution.status != Status::Stopped {
             return Err(unsolved(&solution));
         }
@@ -320,7 +326,8 @@ impl<'a, F> Attempt<'a, F> {
         let Setting { ref keep_outs, heights, segments, .. } = *setting;
         let problem =
             MinimumTime { flight: self.flight, start: *self.start, goal: self.goal, keep_outs, heights };
-        let mut options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU);
+        let mut options =
+            Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU).with_warm_mu(WARM_MU);
         options.max_iterations = self.surroundings.most_iterations.unwrap_or(options.max_iterations);
         let workspace = &mut Workspace::new();
         let watch = |iteration: &Iteration| self.watch(iteration, segments);
@@ -354,17 +361,16 @@ impl<'a, F> Attempt<'a, F> {
     }
 
     /// Ends a solve once the time of its barrier problem is known, if what the barrier costs does not make a candidate fast enough that
-    /// loses, or a sketch is good enough: an estimate, and no proof, because the problem is not convex.
+    /// loses, or good enough to be compared: an estimate, and no proof, because the problem is not convex.
     fn watch(&self, iteration: &Iteration, segments: usize) -> ControlFlow<()> {
         let Iteration { objective, lagrangian, mu, residuals, regularisation, .. } = *iteration;
         let is_known =
             residuals.dual < NEARLY_STATIONARY && (lagrangian - objective).abs() < NEARLY_EQUAL * objective;
         let loses = lagrangian - mu * GREATEST_BARRIER_COST * segments as f64 > self.to_beat;
-        let is_sketched = self.detail == Detail::Sketch
-            && mu < SKETCH_MU
-            && residuals.primal < SKETCH_PRIMAL
-            && regularisation < SKETCH_REGULARISATION;
-        if is_known && (loses || is_sketched) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let is_enough = self.enough_mu.is_some_and(|enough| {
+            mu < enough && residuals.primal < ENOUGH_PRIMAL * enough && regularisation < ENOUGH_REGULARISATION
+        });
+        if is_known && (loses || is_enough) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn look<const NX: usize, const NU: usize>(&self, transition: &Transition) -> Option<Examination>

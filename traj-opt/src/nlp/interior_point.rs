@@ -280,7 +280,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
 
     /// Monotone decrease of mu (Fiacco and McCormick) once the barrier problem is solved well enough.
     fn update_barrier(&mut self, options: &Options, mut residuals: Residuals) {
-        let least = options.tolerance / 10.0 * self.objective_scale;
+        let least = self.least_mu(options) * self.objective_scale;
         let scale = self.multiplier_scale() * self.objective_scale;
         while self.mu > least {
             residuals.complementarity = self.bounds.complementarity(&self.w, self.mu) / scale;
@@ -290,6 +290,13 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             self.mu = (KAPPA_MU * self.mu).min(self.mu.powf(THETA_MU)).max(least);
             self.filter.clear();
         }
+    }
+
+    /// The last barrier parameter, relative to the scale of the cost. A warm start whose own is within the tolerance stays there: another
+    /// barrier problem would cost it as many iterations as the first.
+    fn least_mu(&self, options: &Options) -> f64 {
+        let least = options.tolerance / 10.0;
+        if self.warm { least.max(options.warm_mu.min(options.tolerance / 3.0)) } else { least }
     }
 
     /// Greatest step along a direction that respects the bounds and changes the length of the flight moderately.
