@@ -27,6 +27,7 @@ fn assert_certified(metric: &impl Metric, matching: &christofides::Matching) {
     let proof = certificate(metric, matching);
     let tolerance = matching.error_bound() + 1e-9 * matching.weight();
     assert!(proof.is_optimal_within(tolerance), "{proof:?} {}", matching.error_bound());
+    assert!(matching.mates().is_empty() || proof.greatest_matched_slack.abs() <= tolerance, "{proof:?}");
     assert!((proof.weight - matching.weight()).abs() <= 1e-12 * proof.weight);
 }
 
@@ -62,6 +63,9 @@ fn a_wrong_matching_has_no_certificate() {
     moved.swap(0, 25);
     let proof = certificate(&Points(&moved), &right);
     assert!(!proof.is_optimal_within(right.error_bound() + 1e-9 * right.weight()));
+    // the slacks of the matched pairs add up to what the weight exceeds the dual objective by
+    let duals = right.duals().iter().sum::<f64>() + right.blossoms().iter().map(|b| b.dual).sum::<f64>();
+    assert!(proof.greatest_matched_slack >= (proof.weight - duals) / 25.0 - 1e-6);
     assert!(!certificate(&Points(&points[..48]), &right).is_consistent);
 }
 
