@@ -216,15 +216,14 @@ fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
     warnings.extend(unseen.map(|(target, share)| Warning::OutOfView { target, share }));
     let sampler = plan.sampler(mission);
     let vehicles: Vec<usize> = (0..plan.vehicles.len()).collect();
-    let energies =
-        side_by_side(&vehicles, |&vehicle| sampler.as_ref().map_or(0.0, |sampler| sampler.energy(vehicle)));
+    let energies = side_by_side(&vehicles, |&vehicle| sampler.as_ref()?.energy(vehicle));
     for ((vehicle, planned), energy) in plan.vehicles.iter().enumerate().zip(energies) {
         let (duration, endurance) = (planned.duration(), mission.fleet.endurance);
         if duration > endurance {
             warnings.push(Warning::Endurance { vehicle, duration, endurance });
         }
         let usable = mission.fleet.vehicle.parameters().battery.usable_energy();
-        if energy > usable {
+        if let Some(energy) = energy.filter(|&energy| energy > usable) {
             warnings.push(Warning::Battery { vehicle, energy, usable });
         }
         for (leg, planned) in planned.legs.iter().enumerate() {

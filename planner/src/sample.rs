@@ -63,6 +63,30 @@ impl<'a> Sampler<'a> {
         (0..n).map(move |i| self.moment(vehicle, (start + i as f64 * step).min(end)))
     }
 
+    /// A vehicle's flight at `rate` (Hz, above 0), its last moment included; empty for a spare vehicle.
+    ///
+    /// `None` if there is no such vehicle, if the rate is not positive or asks for more than 2^24 moments (9 hours at 500 Hz).
+    #[must_use]
+    pub fn at_rate(&self, vehicle: usize, rate: f64) -> Option<Vec<Sample>> {
+        let duration = self.plan.vehicles.get(vehicle)?.duration();
+        (rate > 0.0 && duration * rate < MOST_MOMENTS).then(|| self.samples(vehicle, 1.0 / rate).collect())
+    }
+
+    /// Electrical energy of a vehicle's flight (J), by momentum theory ([`Vehicle::power`](quad_dynamics::Vehicle::power)) with the
+    /// velocity against the air, summed up by the trapezoidal rule; 0 for a spare vehicle, `None` if there is no such vehicle.
+    #[must_use]
+    pub fn energy(&self, vehicle: usize) -> Option<f64> {
+        let planned = self.plan.vehicles.get(vehicle)?;
+        if planned.legs.is_empty() {
+            return Some(0.0);
+        }
+        let steps = (planned.duration() / ENERGY_STEP).ceil().max(1.0);
+        let step = planned.duration() / steps;
+        let power = |i: usize| self.power(vehicle, planned.start_time() + i as f64 * step);
+        let powers: Vec<f64> = (0..=steps as usize).map(power).collect();
+        Some(step * powers.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).sum::<f64>())
+    }
+
     fn moment(&self, vehicle: usize, time: f64) -> Sample {
         let (motion, phase, circle) = self.motion(vehicle, time);
         Sample {
@@ -91,16 +115,6 @@ impl<'a> Sampler<'a> {
     /// Greatest speed over the ground on a leg (m/s).
     pub(crate) fn top_speed(&self, leg: &Leg) -> f64 {
         leg.transition.max_speed.max(self.airs.loiter_speed(leg))
-    }
-
-    /// Electrical energy of a vehicle's flight (J), by the trapezoidal rule.
-    pub(crate) fn energy(&self, vehicle: usize) -> f64 {
-        let planned = &self.plan.vehicles[vehicle];
-        let steps = (planned.duration() / ENERGY_STEP).ceil().max(1.0);
-        let step = planned.duration() / steps;
-        let power = |i: usize| self.power(vehicle, planned.start_time() + i as f64 * step);
-        let powers: Vec<f64> = (0..=steps as usize).map(power).collect();
-        step * powers.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).sum::<f64>()
     }
 
     /// Electrical power in the wind of the leg that is being flown (W).
@@ -139,17 +153,12 @@ pub(crate) const MOST_MOMENTS: f64 = (1_u32 << 24) as f64;
 const ENERGY_STEP: f64 = 0.1;
 
 impl Plan {
-    /// Electrical energy of a vehicle's flight (J), by momentum theory ([`Vehicle::power`](quad_dynamics::Vehicle::power)) with the
-    /// velocity against the air; 0 for a spare vehicle.
+    /// Electrical energy of a vehicle's flight (J): [`Sampler::energy`].
     ///
     /// `None` if there is no such vehicle, or if `mission` is not the one that was planned.
     #[must_use]
     pub fn energy(&self, mission: &Mission, vehicle: usize) -> Option<f64> {
-        let planned = self.vehicles.get(vehicle)?;
-        if planned.legs.is_empty() {
-            return Some(0.0);
-        }
-        Some(Sampler::new(self, mission)?.energy(vehicle))
+        self.sampler(mission)?.energy(vehicle)
     }
 
     /// The plan ready to be asked for many moments. `None` if `mission` is not the one that was planned.
@@ -167,14 +176,9 @@ impl Plan {
         self.sampler(mission)?.sample(vehicle, time)
     }
 
-    /// A vehicle's flight at `rate` (Hz, above 0), its last moment included; empty for a spare vehicle.
-    ///
-    /// `None` if there is no such vehicle, if the rate is not positive or asks for more than 2^24 moments (9 hours at 500 Hz), or if
-    /// `mission` is not the one that was planned.
+    /// A vehicle's flight at `rate` (Hz): [`Sampler::at_rate`]. `None` as there, and if `mission` is not the one that was planned.
     #[must_use]
     pub fn samples(&self, mission: &Mission, vehicle: usize, rate: f64) -> Option<Vec<Sample>> {
-        let duration = self.vehicles.get(vehicle)?.duration();
-        (rate > 0.0 && duration * rate < MOST_MOMENTS).then_some(())?;
-        Some(self.sampler(mission)?.samples(vehicle, 1.0 / rate).collect())
+        self.sampler(mission)?.at_rate(vehicle, rate)
     }
 }

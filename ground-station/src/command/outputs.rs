@@ -11,6 +11,7 @@ use crate::plot::{map, map_scene, profile, vehicle_profile};
 use crate::report::warning_lines;
 use crate::words;
 use planner::{Plan, Sample, VehiclePlan};
+use rayon::prelude::*;
 
 /// The files of a plan and what the operator should know.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,22 +34,15 @@ const PICTURE_RATE: f64 = 50.0;
 pub fn outputs(file: &MissionFile, plan: &Plan, rate: f64) -> Result<Outputs, Failure> {
     let mut warnings = warning_lines(plan);
     let mut notes = Notes::default();
+    let drawn = drawn(file, plan, rate)?;
     let mut files = Vec::new();
     let mut tracks = Vec::new();
-    for index in 0..plan.vehicles.len() {
-        let samples = sampled(file, plan, index, rate)?;
-        files.push(OutputFile {
-            name: format!("{}.csv", words::flight_file("vehicle", plan, index)),
-            content: trajectory_csv(&samples, &plan.circles),
-        });
-        let samples = sampled(file, plan, index, PICTURE_RATE)?;
-        let picture = profile(&vehicle_profile(file, plan, index, &samples));
-        files.push(OutputFile {
-            name: format!("{}.svg", words::flight_file("profile", plan, index)),
-            content: picture,
-        });
+    for (index, Drawn { table, picture, track }) in drawn.into_iter().enumerate() {
+        let named = |kind: &str, end: &str| format!("{}.{end}", words::flight_file(kind, plan, index));
+        files.push(OutputFile { name: named("vehicle", "csv"), content: table });
+        files.push(OutputFile { name: named("profile", "svg"), content: picture });
         files.extend(autopilot_mission(file, plan, index, &mut notes)?);
-        tracks.push(samples);
+        tracks.push(track);
     }
     warnings.extend(notes.lines());
     if file.origin.is_none() {
@@ -58,11 +52,35 @@ pub fn outputs(file: &MissionFile, plan: &Plan, rate: f64) -> Result<Outputs, Fa
                 .to_owned(),
         );
     }
-    let document =
-        PlanDocument::new(file, plan, &warnings).to_text().map_err(|source| Failure::Format { source })?;
+    let (document, map) = rayon::join(
+        || PlanDocument::new(file, plan, &warnings).to_text(),
+        || map(&map_scene(file, plan, &tracks)),
+    );
+    let document = document.map_err(|source| Failure::Format { source })?;
     files.insert(0, OutputFile { name: "plan.json".into(), content: document });
-    files.insert(1, OutputFile { name: "map.svg".into(), content: map(&map_scene(file, plan, &tracks)) });
+    files.insert(1, OutputFile { name: "map.svg".into(), content: map });
     Ok(Outputs { files, warnings })
+}
+
+/// What is drawn of one vehicle's flight.
+struct Drawn {
+    table: String,
+    picture: String,
+    track: Vec<Sample>,
+}
+
+/// Tables, sampled at `rate` (Hz), and pictures of all vehicles, side by side.
+fn drawn(file: &MissionFile, plan: &Plan, rate: f64) -> Result<Vec<Drawn>, Failure> {
+    let sampler = plan.sampler(&file.mission).ok_or(Failure::Sampling { vehicle: 0 })?;
+    let vehicles = (0..plan.vehicles.len()).into_par_iter();
+    let drawn = vehicles.map(|vehicle| {
+        let sampled = |rate| sampler.at_rate(vehicle, rate).ok_or(Failure::Sampling { vehicle });
+        let table = trajectory_csv(&sampled(rate)?, &plan.circles);
+        let track = sampled(PICTURE_RATE)?;
+        let picture = profile(&vehicle_profile(file, plan, vehicle, &track));
+        Ok(Drawn { table, picture, track })
+    });
+    drawn.collect()
 }
 
 /// The `.plan` file of a vehicle; none without an origin, and none for a vehicle that stays at the depot.

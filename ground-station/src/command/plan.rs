@@ -1,6 +1,6 @@
 //! `plan`: from a mission file to a folder.
 
-use super::outputs::{extremes, outputs, sampled};
+use super::outputs::{extremes, outputs};
 use crate::execution::streamed;
 use crate::export::folder;
 use crate::export::members;
@@ -9,7 +9,8 @@ use crate::input::{self, MissionFile};
 use crate::report::{self, VehicleRow, worst_of};
 use crate::words;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use planner::{Miss, Options, Plan, Tolerances, Transcription, VehiclePlan};
+use planner::{Miss, Options, Plan, Sampler, Tolerances, Transcription, VehiclePlan};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// What is asked of the command.
@@ -110,14 +111,16 @@ fn summary(file: &MissionFile, plan: &Plan) -> Result<String, Failure> {
 
 /// The lines of the table of vehicles.
 pub(crate) fn rows(file: &MissionFile, plan: &Plan) -> Result<Vec<VehicleRow>, Failure> {
-    let row = |(index, vehicle): (usize, &VehiclePlan)| row(file, plan, index, vehicle);
-    plan.vehicles.iter().enumerate().map(row).collect()
+    let sampler = plan.sampler(&file.mission).ok_or(Failure::Sampling { vehicle: 0 })?;
+    let vehicles = plan.vehicles.par_iter().enumerate();
+    vehicles.map(|(index, vehicle)| row(plan, &sampler, index, vehicle)).collect()
 }
 
-fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> Result<VehicleRow, Failure> {
+fn row(plan: &Plan, sampler: &Sampler, index: usize, vehicle: &VehiclePlan) -> Result<VehicleRow, Failure> {
     /// Often enough to see the greatest tilt on a circle.
     const RATE: f64 = 20.0;
-    let [top_speed, top_tilt] = extremes(vehicle, &sampled(file, plan, index, RATE)?);
+    let unknown = || Failure::Sampling { vehicle: index };
+    let [top_speed, top_tilt] = extremes(vehicle, &sampler.at_rate(index, RATE).ok_or_else(unknown)?);
     let circles = || vehicle.route.iter().filter_map(|&circle| plan.circles.get(circle));
     Ok(VehicleRow {
         name: words::flight(plan, index),
@@ -128,7 +131,7 @@ fn row(file: &MissionFile, plan: &Plan, index: usize, vehicle: &VehiclePlan) -> 
         transit: vehicle.transition_time(),
         loiters: vehicle.loiter_time(),
         total: vehicle.duration(),
-        energy: plan.energy(&file.mission, index).ok_or(Failure::Sampling { vehicle: index })?,
+        energy: sampler.energy(index).ok_or_else(unknown)?,
         top_speed,
         top_tilt,
         miss: vehicle.legs.iter().fold(Miss::default(), |worst, leg| worst_of(worst, leg.transition.miss)),

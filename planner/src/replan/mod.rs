@@ -342,7 +342,7 @@ fn longest_flight(plan: &Plan, mission: &Mission) -> f64 {
     let usable = mission.fleet.vehicle.parameters().battery.usable_energy();
     let Some(sampler) = plan.sampler(mission) else { return mission.fleet.endurance };
     let flown = (0..plan.vehicles.len()).filter(|&flight| !plan.vehicles[flight].legs.is_empty());
-    let powers = flown.map(|flight| sampler.energy(flight) / plan.vehicles[flight].duration());
+    let powers = flown.filter_map(|flight| Some(sampler.energy(flight)? / plan.vehicles[flight].duration()));
     mission.fleet.endurance.min(usable / powers.fold(f64::MIN_POSITIVE, f64::max))
 }
 
