@@ -132,22 +132,21 @@ fn fly<D: Dynamics<NX, 4>, const NX: usize>(
 ) -> Result<(Solution<NX, 4>, usize), Failure> {
     // constant controls on half as many segments again cost up to 0.06 % of time more than on these
     let mesh = gathered(first, &transition.bounds, segments * 7 / 4);
-    let options = Options::default().with_tolerance(TOLERANCE).with_initial_mu(1e-4);
+    let options =
+        Options::default().with_tolerance(TOLERANCE).with_initial_mu(1e-4).with_warm_mu(TOLERANCE / 3.0);
     let guess = Guess::from_solution(first, 4);
-    let mut iterations = 0;
-    let mut found = None;
-    for substeps in [1, 2, 4] {
-        let transcription = Transcription::RungeKutta { substeps };
-        let guess = found.as_ref().map_or_else(|| guess.clone(), |s| Guess::from_solution(s, 1));
-        let solution = solve_with(workspace, transition, &mesh, transcription, &guess, &options, proceed)?;
-        iterations += solution.iterations;
-        let miss = transition.miss(&solution);
-        found = Some(solution);
-        if miss.iter().zip(FLYABLE).all(|(miss, limit)| *miss <= limit) {
+    let once = Transcription::RungeKutta { substeps: 1 };
+    let mut solution = solve_with(workspace, transition, &mesh, once, &guess, &options, proceed)?;
+    let mut iterations = solution.iterations;
+    for substeps in [2, 4] {
+        if transition.miss(&solution).iter().zip(FLYABLE).all(|(miss, limit)| *miss <= limit) {
             break;
         }
+        let finer = Transcription::RungeKutta { substeps };
+        solution = solve_from(workspace, transition, &solution, finer, &options, proceed)?;
+        iterations += solution.iterations;
     }
-    Ok((found.ok_or("no solution")?, iterations))
+    Ok((solution, iterations))
 }
 
 /// The same flight to an end state that is turned by 5 degrees about the vertical through `centre`.
