@@ -80,6 +80,7 @@ mod transition;
 #[cfg(feature = "serde")]
 mod unlimited;
 mod verify;
+mod warnings;
 mod whole_route;
 
 pub use christofides;

@@ -5,14 +5,15 @@ use crate::bound::Envelope;
 use crate::certificate;
 use crate::circles::{Orbit, orbits};
 use crate::error::{Error, Problem};
-use crate::legs::{Airspace, side_by_side};
+use crate::legs::Airspace;
 use crate::mission::{Mission, Model, Pipeline};
 use crate::options::{Options, Watch};
-use crate::plan::{Leg, Outcome, Plan, VehiclePlan, Warning};
+use crate::plan::{Leg, Plan, VehiclePlan, Warning};
 use crate::separation::{closest_pair, in_the_air, start_delays};
 use crate::sorties::{self, Flight, share_in_reach};
 use crate::time_model::TimeModel;
 use crate::transition::Pilot;
+use crate::warnings;
 use crate::whole_route::Flown;
 use mtsp::lower_bound::LowerBounds;
 
@@ -108,7 +109,7 @@ fn planned(airspace: &Airspace, flights: Vec<Flight>, bounds: &LowerBounds) -> R
     delay_starts(&mut plan, mission);
     plan.certificate.makespan = plan.vehicles.iter().map(VehiclePlan::end_time).fold(0.0, f64::max);
     plan.closest_approach = in_the_air(&plan, mission, |fleet| closest_pair(&fleet)).flatten();
-    plan.warnings = warnings(&plan, mission);
+    plan.warnings = warnings::of(&plan, mission);
     Ok(plan)
 }
 
@@ -202,38 +203,4 @@ fn more_vehicles(plan: &Plan, routing: &Routing, share: f64) -> Option<Warning> 
     let needed = routing.enough_routes(share * routing.longest(plan)?)?;
     // A longest route that is badly balanced may be too long although there are vehicles enough.
     Some(Warning::MoreVehicles { needed: needed.max(1) })
-}
-
-fn warnings(plan: &Plan, mission: &Mission) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    let spare = plan.vehicles.iter().filter(|vehicle| vehicle.route.is_empty()).count();
-    if spare > 0 {
-        warnings.push(Warning::Spare { vehicles: spare });
-    }
-    let shares = plan.shares_in_view(mission).unwrap_or_default();
-    let least = shares.into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-    let unseen = least.filter(|&(_, share)| share < 1.0);
-    warnings.extend(unseen.map(|(target, share)| Warning::OutOfView { target, share }));
-    let sampler = plan.sampler(mission);
-    let vehicles: Vec<usize> = (0..plan.vehicles.len()).collect();
-    let energies = side_by_side(&vehicles, |&vehicle| sampler.as_ref()?.energy(vehicle));
-    for ((vehicle, planned), energy) in plan.vehicles.iter().enumerate().zip(energies) {
-        let (duration, endurance) = (planned.duration(), mission.fleet.endurance);
-        if duration > endurance {
-            warnings.push(Warning::Endurance { vehicle, duration, endurance });
-        }
-        let usable = mission.fleet.vehicle.parameters().battery.usable_energy();
-        if let Some(energy) = energy.filter(|&energy| energy > usable) {
-            warnings.push(Warning::Battery { vehicle, energy, usable });
-        }
-        for (leg, planned) in planned.legs.iter().enumerate() {
-            let failed =
-                |candidate: &&crate::plan::Candidate| matches!(candidate.outcome, Outcome::Failed { .. });
-            let candidates = planned.candidates.iter().filter(failed).count();
-            if candidates > 0 {
-                warnings.push(Warning::FailedCandidates { vehicle, leg, candidates });
-            }
-        }
-    }
-    warnings
 }

@@ -1,7 +1,9 @@
 //! Plans that follow events.
 
 use planner::quad_dynamics::{Vehicle, VehicleParameters};
-use planner::{Entries, Error, Event, Mission, Options, Plan, Problem, Replanner, Target, Tolerances, plan};
+use planner::{
+    Entries, Error, Event, Mission, Options, Plan, Problem, Replanner, Target, Tolerances, Warning, plan,
+};
 
 /// Two vehicles, four targets.
 fn mission() -> Mission {
@@ -222,6 +224,28 @@ fn legs_are_planned_for_the_wind_that_blows_when_they_start() {
             same_past(&before, replanner.plan(), &was, replanner.mission(), time + 0.2);
         }
     }
+}
+
+#[test]
+fn warnings_follow_events() {
+    let mut mission = mission();
+    let durations = |plan: &Plan| plan.vehicles.iter().map(|v| v.duration()).collect::<Vec<_>>();
+    let longest = durations(replanner().plan()).into_iter().fold(0.0, f64::max);
+    mission.fleet.endurance = 1.01 * longest;
+    let planned = plan(&mission, &Options::default()).unwrap();
+    assert!(!planned.warnings.iter().any(|warning| matches!(warning, Warning::Endurance { .. })));
+    let mut replanner = Replanner::new(mission, planned).unwrap();
+    let mut most = 0;
+    for (time, wind) in [(0.0, [8.0, 0.0]), (1.0, [9.0, 2.0]), (2.0, [0.0, 0.0])] {
+        replanner.apply(time, &Event::WindChanges(wind)).unwrap();
+        let limit = replanner.mission().fleet.endurance;
+        let too_long = durations(replanner.plan()).iter().filter(|&&duration| duration > limit).count();
+        let named =
+            replanner.plan().warnings.iter().filter(|w| matches!(w, Warning::Endurance { .. })).count();
+        assert_eq!(named, too_long, "{:?}", replanner.plan().warnings);
+        most = most.max(too_long);
+    }
+    assert!(most > 0);
 }
 
 #[test]

@@ -27,6 +27,7 @@ use crate::mission::{Mission, Target};
 use crate::plan::{Approach, Plan, VehiclePlan};
 use crate::planning::{calibrated, for_all};
 use crate::time_model::TimeModel;
+use crate::warnings;
 use insertion::Rounds;
 use outlook::{Outlook, Ways};
 use settled::Settled;
@@ -325,6 +326,7 @@ impl Replanner {
         self.plan.certificate.makespan_lower_bound = bounds.makespan;
         self.plan.certificate.total_lower_bound = bounds.total_cost;
         self.ways = Some(ways);
+        warnings::renew(&mut self.plan, &self.mission, &vehicles);
         Ok(Update { vehicles, waiting, conflict })
     }
 }
