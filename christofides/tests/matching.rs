@@ -6,6 +6,7 @@ use christofides::matching::{
 };
 use christofides::{Error, FromFn, Matrix, Metric, Points};
 use proptest::prelude::*;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Decimals of the weights in `index.csv`.
@@ -67,6 +68,50 @@ fn a_wrong_matching_has_no_certificate() {
     let duals = right.duals().iter().sum::<f64>() + right.blossoms().iter().map(|b| b.dual).sum::<f64>();
     assert!(proof.greatest_matched_slack >= (proof.weight - duals) / 25.0 - 1e-6);
     assert!(!certificate(&Points(&points[..48]), &right).is_consistent);
+}
+
+proptest! {
+    /// The least slack that the certificate finds is that of all pairs, also where it is far below zero and the search is pruned.
+    #[test]
+    fn least_slack_is_exhaustive(
+        corners in prop::collection::vec(prop::array::uniform2(0.0..100.0_f64), 2..25),
+        shifts in prop::collection::vec(prop::array::uniform2(-8.0..8.0_f64), 150),
+        is_far in any::<bool>(),
+    ) {
+        // odd groups, which blossoms surround
+        let spread = |c: &[f64; 2]| [[0.0, 0.0], [1.0, 0.0], [0.0, 1.2]].map(|d| [c[0] + d[0], c[1] + d[1]]);
+        let mut points: Vec<[f64; 2]> = corners.iter().flat_map(spread).collect();
+        points.truncate(points.len() / 2 * 2);
+        let matching = min_weight_perfect_matching(&Points(&points)).unwrap();
+        let scale = if is_far { 1.0 } else { 1e-3 };
+        for (point, shift) in points.iter_mut().zip(&shifts) {
+            *point = [point[0] + scale * shift[0], point[1] + scale * shift[1]];
+        }
+        let sets: Vec<HashSet<usize>> = (0..matching.blossoms().len())
+            .map(|k| {
+                let within = |mut j: usize| loop {
+                    match matching.blossoms()[j].parent {
+                        _ if j == k => return true,
+                        Some(parent) => j = parent,
+                        None => return false,
+                    }
+                };
+                let inside = (0..=k).filter(|&j| within(j));
+                inside.flat_map(|j| matching.blossoms()[j].vertices.iter().copied()).collect()
+            })
+            .collect();
+        let slack = |u: usize, v: usize| {
+            let separating = |k: &usize| sets[*k].contains(&u) != sets[*k].contains(&v);
+            let duals: f64 = (0..sets.len()).filter(separating).map(|k| matching.blossoms()[k].dual).sum();
+            Points(&points).distance(u, v) - matching.duals()[u] - matching.duals()[v] - duals
+        };
+        let pairs = (0..points.len()).flat_map(|u| (0..u).map(move |v| (u, v)));
+        let least = pairs.map(|(u, v)| slack(u, v)).fold(0.0, f64::min);
+        let abstract_ = FromFn::symmetric(points.len(), |u, v| Points(&points).distance(u, v));
+        for found in [certificate(&Points(&points), &matching), certificate(&abstract_, &matching)] {
+            prop_assert!((found.least_slack - least).abs() <= 1e-9 * (1.0 + least.abs()), "{found:?} {least}");
+        }
+    }
 }
 
 #[test]

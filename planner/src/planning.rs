@@ -5,7 +5,7 @@ use crate::bound::Envelope;
 use crate::certificate;
 use crate::circles::{Orbit, orbits};
 use crate::error::{Error, Problem};
-use crate::legs::Airspace;
+use crate::legs::{Airspace, side_by_side};
 use crate::mission::{Mission, Model, Pipeline};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Plan, VehiclePlan, Warning};
@@ -145,7 +145,8 @@ pub(crate) fn envelope(mission: &Mission, orbits: &[Orbit]) -> Envelope {
 
 /// The legs of every route, each leg by itself the fastest.
 fn fly_all(airspace: &Airspace, flights: &[Flight]) -> Result<Vec<Vec<Leg>>, Error> {
-    for_all(flights.iter().collect(), |Flight { vehicle, pad, route }| airspace.fly(*vehicle, *pad, route))
+    let fly = |Flight { vehicle, pad, route }: &Flight| airspace.fly(*vehicle, *pad, route);
+    side_by_side(flights, fly).into_iter().collect()
 }
 
 /// The legs of every route with entries chosen for the route as a whole where that is faster.
@@ -160,7 +161,7 @@ fn reconsider_all(
         .map(|(legs, Flight { vehicle, pad, route })| Flown { vehicle: *vehicle, pad: *pad, route, legs })
         .collect();
     let model = calibrated(airspace, flown.iter().map(|flown| (flown.pad, flown.route, &flown.legs[..])));
-    for_all(flown, |flown| airspace.reconsider(flown, &model))
+    side_by_side(&flown, |flown| airspace.reconsider(flown, &model)).into_iter().collect()
 }
 
 /// The time model that fits the transitions solved for some flights: pad, route, legs.
@@ -180,22 +181,6 @@ fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + 
     return rayon::join(a, b);
     #[cfg(not(feature = "rayon"))]
     (a(), b())
-}
-
-/// Does something for every route; with the feature `rayon` side by side. The first error in order counts, on any number of
-/// threads.
-pub(crate) fn for_all<T: Send, R: Send>(
-    items: Vec<T>,
-    work: impl Fn(T) -> Result<R, Error> + Send + Sync,
-) -> Result<Vec<R>, Error> {
-    #[cfg(feature = "rayon")]
-    let done: Vec<Result<R, Error>> = {
-        use rayon::prelude::*;
-        items.into_par_iter().map(work).collect()
-    };
-    #[cfg(not(feature = "rayon"))]
-    let done: Vec<Result<R, Error>> = items.into_iter().map(work).collect();
-    done.into_iter().collect()
 }
 
 /// How many vehicles are needed where some fly longer than they can.

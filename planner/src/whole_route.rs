@@ -41,17 +41,17 @@ impl Airspace<'_> {
     }
 
     /// The legs of a route with the entries that are best for it as a whole, if the model proposes any that turn out faster.
-    pub(crate) fn reconsider(&self, flown: Flown, model: &TimeModel) -> Result<Vec<Leg>, Error> {
-        let Flown { vehicle, pad, route, legs } = flown;
+    pub(crate) fn reconsider(&self, flown: &Flown, model: &TimeModel) -> Result<Vec<Leg>, Error> {
+        let &Flown { vehicle, pad, route, ref legs } = flown;
         let entries = self.shortest_path(pad, route, model);
         let same = |leg: &Leg, entry: &Entry| leg.loiter.is_some_and(|loiter| loiter.entry == *entry);
         if legs.iter().zip(&entries).all(|(leg, entry)| same(leg, entry)) {
-            return Ok(legs);
+            return Ok(legs.clone());
         }
-        match self.fly_entries(vehicle, pad, route, &entries, &legs) {
-            Ok(proposed) if time(&proposed) < time(&legs) => Ok(proposed),
+        match self.fly_entries(vehicle, pad, route, &entries, legs) {
+            Ok(proposed) if time(&proposed) < time(legs) => Ok(proposed),
             Err(Error::Stopped) => Err(Error::Stopped),
-            _ => Ok(legs),
+            _ => Ok(legs.clone()),
         }
     }
 

@@ -23,12 +23,14 @@ mod sorties;
 use crate::airs::Airs;
 use crate::circles::orbits;
 use crate::error::{Error, Problem};
+use crate::legs::{Airspace, side_by_side};
 use crate::mission::{Mission, Target};
-use crate::plan::{Approach, Plan, VehiclePlan};
-use crate::planning::{calibrated, for_all};
+use crate::plan::{Approach, Leg, Plan, VehiclePlan};
+use crate::planning::calibrated;
 use crate::time_model::TimeModel;
 use crate::warnings;
 use insertion::Rounds;
+use mtsp::lower_bound::LowerBounds;
 use outlook::{Outlook, Ways};
 use settled::Settled;
 use skies::Skies;
@@ -287,30 +289,17 @@ impl Replanner {
         let ways = Ways::of(airspace, &team, self.ways.as_ref());
         let bounds = Outlook::new(&ways, airspace, &self.plan, (&team, &self.usable), time).bounds();
         self.plan.circles = airspace.orbits.iter().map(|orbit| orbit.circle.clone()).collect();
-        let legs = for_all(team.into_iter().enumerate().collect(), |(vehicle, settled)| {
-            let planned = &self.plan.vehicles[vehicle];
-            match planned.lost_at {
-                Some(_) => Ok(None),
-                None => refly::fly(&skies, &self.model, vehicle, planned, settled, &changes),
+        let team: Vec<(usize, Settled)> = team.into_iter().enumerate().collect();
+        let legs = side_by_side(&team, |(flight, settled)| {
+            let planned = &self.plan.vehicles[*flight];
+            if planned.lost_at.is_some() {
+                return Ok(None);
             }
-        })?;
-        let mut vehicles = Vec::new();
-        for (vehicle, legs) in legs.into_iter().enumerate() {
-            let planned = &self.plan.vehicles[vehicle];
-            if let Some(lost) = planned.lost_at {
-                vehicles.extend((lost == time).then_some(vehicle));
-                continue;
-            }
-            if let Some(legs) = legs {
-                let planned = &mut self.plan.vehicles[vehicle];
-                planned.route = legs.iter().filter_map(|leg| Some(leg.loiter?.circle)).collect();
-                if planned.legs.first().is_none_or(|leg| leg.start_time > time) {
-                    planned.heading = airspace.heading(planned.pad, &planned.route);
-                }
-                planned.legs = legs;
-                vehicles.push(vehicle);
-            }
-        }
+            refly::fly(&skies, &self.model, *flight, planned, settled, &changes)
+        })
+        .into_iter()
+        .collect::<Result<_, _>>()?;
+        let mut vehicles = take_over(&mut self.plan, airspace, time, legs);
         self.plan.skipped.sort_unstable();
         vehicles.extend(follow_on(&mut self.plan, &ends, from, self.mission.swap_time.unwrap_or(0.0)));
         let (waiting_for_others, closest) = give_way::give_way(&mut self.plan, &self.mission, time);
@@ -320,15 +309,42 @@ impl Replanner {
         self.plan.closest_approach = closest;
         let conflict = closest.filter(|approach| approach.distance < self.mission.fleet.separation);
         self.waiting.clone_from(&waiting);
-        let flown = || self.plan.vehicles.iter();
-        self.plan.certificate.makespan = flown().map(|vehicle| vehicle.end_time()).fold(0.0, f64::max);
-        self.plan.certificate.total = flown().map(|vehicle| vehicle.duration()).sum();
-        self.plan.certificate.makespan_lower_bound = bounds.makespan;
-        self.plan.certificate.total_lower_bound = bounds.total_cost;
+        certify(&mut self.plan, &bounds);
         self.ways = Some(ways);
         warnings::renew(&mut self.plan, &self.mission, &vehicles);
         Ok(Update { vehicles, waiting, conflict })
     }
+}
+
+/// Hands the new legs to their flights; returns the flights that are different now.
+fn take_over(plan: &mut Plan, airspace: &Airspace, time: f64, legs: Vec<Option<Vec<Leg>>>) -> Vec<usize> {
+    let mut vehicles = Vec::new();
+    for (vehicle, legs) in legs.into_iter().enumerate() {
+        let planned = &plan.vehicles[vehicle];
+        if let Some(lost) = planned.lost_at {
+            vehicles.extend((lost == time).then_some(vehicle));
+            continue;
+        }
+        if let Some(legs) = legs {
+            let planned = &mut plan.vehicles[vehicle];
+            planned.route = legs.iter().filter_map(|leg| Some(leg.loiter?.circle)).collect();
+            if planned.legs.first().is_none_or(|leg| leg.start_time > time) {
+                planned.heading = airspace.heading(planned.pad, &planned.route);
+            }
+            planned.legs = legs;
+            vehicles.push(vehicle);
+        }
+    }
+    vehicles
+}
+
+/// Times of the plan beside bounds over everything that could still be flown.
+fn certify(plan: &mut Plan, bounds: &LowerBounds) {
+    let flown = || plan.vehicles.iter();
+    plan.certificate.makespan = flown().map(|vehicle| vehicle.end_time()).fold(0.0, f64::max);
+    plan.certificate.total = flown().map(|vehicle| vehicle.duration()).sum();
+    plan.certificate.makespan_lower_bound = bounds.makespan;
+    plan.certificate.total_lower_bound = bounds.total_cost;
 }
 
 /// Tighter limits on flights that are tried.

@@ -15,7 +15,7 @@ pub(super) fn fly(
     model: &TimeModel,
     vehicle: usize,
     planned: &VehiclePlan,
-    settled: Settled,
+    settled: &Settled,
     changes: &Changes,
 ) -> Result<Option<Vec<Leg>>, Error> {
     let gone = &changes.gone;
@@ -27,7 +27,7 @@ pub(super) fn fly(
     if settled.landed || keeps {
         return Ok(None);
     }
-    let Settled { mut legs, broken_off, here, mut time, open, .. } = settled;
+    let Settled { mut legs, broken_off, here, mut time, open, .. } = settled.clone();
     let now = skies.now();
     let taken_off = here.is_some();
     if open.is_empty() && !taken_off {
