@@ -371,3 +371,18 @@ fn a_sampler_gives_the_moments_of_the_plan() {
     other.targets.pop();
     assert!(plan.sampler(&other).is_none());
 }
+
+/// On a leg of 800 m knots are farther apart than a safe distance is wide: entering it between two of them is no way out.
+#[test]
+fn a_safe_distance_is_kept_between_knots_that_are_far_apart() {
+    for step in 0..12 {
+        let aside = 0.3 * f64::from(step) - 1.5;
+        let vehicle = Vehicle::new(VehicleParameters::survey_450()).unwrap();
+        let mut mission =
+            Mission::new(vehicle, 1, vec![Target::at([420.0, aside]), Target::at([800.0, 3.0])]);
+        mission.transition.entries = Entries::Sampled(2);
+        let plan = plan(&mission, &Options::default()).unwrap();
+        let verification = plan.verify(&mission, &Tolerances::default());
+        assert!(verification.passed(), "{aside} m: {:?}", verification.failures);
+    }
+}

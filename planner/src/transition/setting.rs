@@ -31,10 +31,15 @@ impl Setting {
     }
 
     /// Puts the keep-out that is entered farthest away; false if none is entered.
-    pub fn put_farther(&mut self, surroundings: &Surroundings, seen: &Examination) -> bool {
+    pub fn put_farther(
+        &mut self,
+        surroundings: &Surroundings,
+        transition: &Transition,
+        seen: &Examination,
+    ) -> bool {
         match seen.closest {
             Some(closest) if seen.clearance < 0.0 => {
-                self.enlarge(surroundings.keep_outs[closest], -seen.clearance);
+                self.enlarge(surroundings.keep_outs[closest], -seen.clearance, transition);
                 true
             }
             _ => false,
@@ -50,7 +55,7 @@ impl Setting {
         transition: &Transition,
         seen: &Examination,
     ) -> bool {
-        let mut again = self.put_farther(surroundings, seen);
+        let mut again = self.put_farther(surroundings, transition, seen);
         // A collocation scheme is judged by its own equations, and its miss is what the caller asked to see.
         if surroundings.settings.transcription != Transcription::RungeKutta {
             return again;
@@ -61,7 +66,7 @@ impl Setting {
         }
         if seen.limit_violation > GOOD_BOUND && self.segments < most_segments {
             // Between knots a limit is overstepped by the square of their distance.
-            self.segments *= 2;
+            self.divide(surroundings);
             again = true;
         }
         if excess(&transition.miss) > 1.0 {
@@ -79,12 +84,26 @@ impl Setting {
         step / (SAFETY * excess(&transition.miss).max(1.0).powf(0.25))
     }
 
-    /// Pushes one keep-out's boundary outwards by what it was entered, and a little more; adds it if it was not considered.
-    fn enlarge(&mut self, entered: KeepOut, by: f64) {
-        let margin = 1.3 * by + 0.01;
+    /// Pushes one keep-out's boundary outwards by what it was entered, and a little more; adds it if it was not considered. Where
+    /// knots are so far apart that it was entered between two of them, as far as the nearer one: a boundary that no knot touches
+    /// moves nothing.
+    fn enlarge(&mut self, entered: KeepOut, by: f64, transition: &Transition) {
+        let [x, y] = entered.centre;
+        let distances = transition.states.iter().map(|state| (state[0] - x).hypot(state[1] - y));
+        let nearest = distances.fold(f64::INFINITY, f64::min);
+        let farther = |radius: f64| radius.max(nearest) + 1.3 * by + 0.01;
         match self.keep_outs.iter_mut().find(|keep_out| keep_out.centre == entered.centre) {
-            Some(keep_out) => keep_out.radius += margin,
-            None => self.keep_outs.push(KeepOut { radius: entered.radius + margin, ..entered }),
+            Some(keep_out) => keep_out.radius = farther(keep_out.radius),
+            None => self.keep_outs.push(KeepOut { radius: farther(entered.radius), ..entered }),
+        }
+    }
+
+    /// Boundaries are where they should be again: with other knots, others touch them.
+    fn divide(&mut self, surroundings: &Surroundings) {
+        self.segments *= 2;
+        for keep_out in &mut self.keep_outs {
+            let same = surroundings.keep_outs.iter().find(|other| other.centre == keep_out.centre);
+            keep_out.radius = same.map_or(keep_out.radius, |other| other.radius);
         }
     }
 }
@@ -100,4 +119,66 @@ fn excess(miss: &Miss) -> f64 {
 fn narrowed(heights: [f64; 2], wanted: [f64; 2], by: f64) -> [f64; 2] {
     let most = 0.1 * (wanted[1] - wanted[0]);
     [(heights[0] + by).min(wanted[0] + most), (heights[1] - by).max(wanted[1] - most)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mission::{Model, TransitionSettings};
+    use crate::plan::SolverStatus;
+    use nalgebra::Vector3;
+    use quad_dynamics::{Motion, Vehicle, VehicleParameters};
+
+    /// A transition straight east whose knots have these places.
+    fn through(places: &[[f64; 2]]) -> Transition {
+        Transition {
+            model: Model::PointMass,
+            duration: 1.0,
+            length: 1.0,
+            knots: (0..places.len()).map(|i| i as f64).collect(),
+            states: places.iter().map(|&[x, y]| vec![x, y, 5.0, 10.0, 0.0, 0.0]).collect(),
+            controls: Vec::new(),
+            control_nodes: 1,
+            status: SolverStatus::Solved,
+            iterations: 1,
+            dual_residual: 0.0,
+            primal_residual: 0.0,
+            miss: Miss::default(),
+            max_speed: 10.0,
+            max_tilt: 0.0,
+        }
+    }
+
+    /// How far the boundary of a keep-out of 1.5 m around the origin is pushed when it is entered by 3 mm.
+    fn pushed(places: &[[f64; 2]]) -> f64 {
+        let keep_out = KeepOut { centre: [0.0, 0.0], radius: 1.5 };
+        let surroundings = Surroundings {
+            keep_outs: &[keep_out],
+            heights: [0.0, 50.0],
+            settings: &TransitionSettings::default(),
+            most_iterations: None,
+        };
+        let vehicle = Vehicle::new(VehicleParameters::survey_450()).expect("a preset");
+        let seen = Examination {
+            end: Motion::hover(&vehicle, Vector3::zeros(), 0.0),
+            length: 1.0,
+            max_speed: 10.0,
+            max_tilt: 0.0,
+            clearance: -0.003,
+            closest: Some(0),
+            height_violation: 0.0,
+            limit_violation: 0.0,
+        };
+        let mut setting =
+            Setting { keep_outs: vec![keep_out], heights: [0.0, 50.0], longest_step: 1.0, segments: 40 };
+        assert!(setting.put_farther(&surroundings, &through(places), &seen));
+        setting.keep_outs[0].radius
+    }
+
+    #[test]
+    fn a_boundary_reaches_a_knot() {
+        // a knot on the boundary, and none within 9 m: one of them must be moved
+        assert!((pushed(&[[-20.0, 1.5], [0.0, 1.5], [20.0, 1.5]]) - 1.5139).abs() < 1e-9);
+        assert!((pushed(&[[-9.0, 1.497], [11.0, 1.497]]) - 9f64.hypot(1.497) - 0.0139).abs() < 1e-9);
+    }
 }

@@ -252,8 +252,8 @@ impl<'a, F> Attempt<'a, F> {
         let setting = Setting { keep_outs, heights, longest_step, segments };
         let mut solved = self.solved(First::Guess(first), setting)?;
         for _ in 1..MOST_ROUNDS {
-            let Solved { ref mut setting, ref seen, .. } = solved;
-            if !seen.is_some_and(|seen| setting.put_farther(self.surroundings, &seen)) {
+            let Solved { ref mut setting, ref seen, ref transition, .. } = solved;
+            if !seen.is_some_and(|seen| setting.put_farther(self.surroundings, transition, &seen)) {
                 return Ok(solved);
             }
             solved = self.solved(First::Solution(Box::new(solved.solution)), solved.setting)?;
