@@ -59,7 +59,22 @@ impl Mission {
 
     fn number_problems(&self) -> Vec<Problem> {
         let mut ranges = Ranges(Vec::new());
-        let (loiter, transition) = (&self.loiter, &self.transition);
+        self.check_fleet(&mut ranges);
+        self.check_loiter(&mut ranges);
+        self.check_transition(&mut ranges);
+        self.check_targets(&mut ranges);
+        ranges.within(
+            "environment.wind",
+            &self.environment.wind,
+            -STRONGEST,
+            STRONGEST,
+            "from -100 to 100 (m/s)",
+        );
+        ranges.within("targets.merge_within", &[self.merge_within], 0.0, FARTHEST, "from 0 to 100000 (m)");
+        ranges.0
+    }
+
+    fn check_fleet(&self, ranges: &mut Ranges) {
         ranges.within("depot.position", &self.depot, -FARTHEST, FARTHEST, "within 100 km of the origin");
         if self.fleet.vehicles == 0 {
             ranges.0.push(Problem::NoVehicles);
@@ -75,6 +90,10 @@ impl Mission {
         if let Some(swap_time) = self.swap_time {
             ranges.within("fleet.swap_time", &[swap_time], 0.0, 1e6, "from 0 to 1000000 (s)");
         }
+    }
+
+    fn check_loiter(&self, ranges: &mut Ranges) {
+        let loiter = &self.loiter;
         ranges.above_zero("loiter.radius", loiter.radius, 1e4, "above 0, up to 10000 (m)");
         ranges.above_zero("loiter.height", loiter.height, 1e4, "above 0, up to 10000 (m)");
         ranges.above_zero(
@@ -91,6 +110,10 @@ impl Mission {
             f64::INFINITY,
             "above 0 (m/s^2)",
         );
+    }
+
+    fn check_transition(&self, ranges: &mut Ranges) {
+        let transition = &self.transition;
         if let Entries::Sampled(n) = transition.entries {
             ranges.within("transition.entries", &[n as f64], 1.0, 360.0, "from 1 to 360, or \"free\"");
         }
@@ -123,6 +146,9 @@ impl Mission {
                 ranges.above_zero(&format!("transition.shaping.{key}"), value, 1e4, "above 0, up to 10000");
             }
         }
+    }
+
+    fn check_targets(&self, ranges: &mut Ranges) {
         if self.targets.is_empty() {
             ranges.0.push(Problem::NoTargets);
         }
@@ -145,15 +171,6 @@ impl Mission {
                 ranges.within(&field("safe_distance"), &[distance], 0.0, 1e4, "from 0 to 10000 (m)");
             }
         }
-        ranges.within(
-            "environment.wind",
-            &self.environment.wind,
-            -STRONGEST,
-            STRONGEST,
-            "from -100 to 100 (m/s)",
-        );
-        ranges.within("targets.merge_within", &[self.merge_within], 0.0, FARTHEST, "from 0 to 100000 (m)");
-        ranges.0
     }
 
     fn loiter_problems(&self, problems: &mut Vec<Problem>) {

@@ -192,33 +192,9 @@ impl Replanner {
                 }
             }
             Event::TargetMoves(target, position) => {
-                self.known(target < self.mission.targets.len(), "target", target)?;
-                if self.plan.skipped.contains(&target) || self.is_settled(target, time) {
-                    // Nobody circles it there; others keep their distance.
-                    self.plan.skipped.push(self.mission.targets.len());
-                    changes.keep_outs.push(self.mission.targets.len());
-                    let moved = Target { position, ..self.mission.targets[target].clone() };
-                    self.mission.targets.push(moved);
-                } else {
-                    self.mission.targets[target].position = position;
-                    changes.keep_outs.push(target);
-                    changes.gone.push(target);
-                    changes.wanted.retain(|&waiting| waiting != target);
-                    changes.wanted.push(target);
-                }
+                self.move_target(time, (target, position), &mut changes)?
             }
-            Event::VehicleFails(vehicle) => {
-                self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
-                self.usable[vehicle] = false;
-                for planned in self.plan.vehicles.iter_mut().filter(|planned| planned.vehicle == vehicle) {
-                    let done = planned.legs.iter().take_while(|leg| leg.end_time() <= time).count();
-                    if done < planned.legs.len() {
-                        changes.wanted.extend(planned.route.drain(done.min(planned.route.len())..));
-                        planned.legs.truncate(done);
-                        planned.lost_at = Some(time);
-                    }
-                }
-            }
+            Event::VehicleFails(vehicle) => self.lose(time, vehicle, &mut changes)?,
             Event::VehicleReturns(vehicle) => {
                 self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
                 let own = || self.plan.vehicles.iter().filter(|planned| planned.vehicle == vehicle);
@@ -243,6 +219,45 @@ impl Replanner {
         }
         let problems = self.mission.problems();
         if problems.is_empty() { Ok(changes) } else { Err(Error::Mission { problems }) }
+    }
+
+    /// A target that has been circled becomes another one, which nobody circles; any other is circled where it is now.
+    fn move_target(
+        &mut self,
+        time: f64,
+        (target, position): (usize, [f64; 2]),
+        changes: &mut Changes,
+    ) -> Result<(), Error> {
+        self.known(target < self.mission.targets.len(), "target", target)?;
+        if self.plan.skipped.contains(&target) || self.is_settled(target, time) {
+            // Nobody circles it there; others keep their distance.
+            self.plan.skipped.push(self.mission.targets.len());
+            changes.keep_outs.push(self.mission.targets.len());
+            let moved = Target { position, ..self.mission.targets[target].clone() };
+            self.mission.targets.push(moved);
+        } else {
+            self.mission.targets[target].position = position;
+            changes.keep_outs.push(target);
+            changes.gone.push(target);
+            changes.wanted.retain(|&waiting| waiting != target);
+            changes.wanted.push(target);
+        }
+        Ok(())
+    }
+
+    /// What a lost vehicle has not completed must find a place with others.
+    fn lose(&mut self, time: f64, vehicle: usize, changes: &mut Changes) -> Result<(), Error> {
+        self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
+        self.usable[vehicle] = false;
+        for planned in self.plan.vehicles.iter_mut().filter(|planned| planned.vehicle == vehicle) {
+            let done = planned.legs.iter().take_while(|leg| leg.end_time() <= time).count();
+            if done < planned.legs.len() {
+                changes.wanted.extend(planned.route.drain(done.min(planned.route.len())..));
+                planned.legs.truncate(done);
+                planned.lost_at = Some(time);
+            }
+        }
+        Ok(())
     }
 
     fn known(&self, is_known: bool, what: &'static str, index: usize) -> Result<(), Error> {
