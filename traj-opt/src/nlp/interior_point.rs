@@ -3,6 +3,7 @@
 
 use super::barrier::Box;
 use super::boundary::BoundaryRows;
+use super::course::{Course, worst_of};
 use super::filter::{Filter, Origin};
 use super::kkt::{Direction, System};
 use super::layout::Layout;
@@ -33,10 +34,6 @@ const RETRY_DAMPING: f64 = 1e-4;
 /// Most that one step may shorten or lengthen the flight.
 const SHORTEN: f64 = 0.5;
 const LENGTHEN: f64 = 3.0;
-/// A solve whose steps are shorter than this, this many times in a row, far from feasible, is stuck.
-const SHORT_STEP: f64 = 0.03;
-const SHORT_STEPS: usize = 4;
-const FAR_FROM_FEASIBLE: f64 = 1e-2;
 /// A guess that violates the constraints by more is first moved towards feasibility.
 const INFEASIBLE_GUESS: f64 = 0.1;
 /// Regularisation above which it is tried before none.
@@ -194,18 +191,8 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         give_up_early: bool,
         mut monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
     ) -> Outcome {
-        self.filter.start(self.theta(&self.values));
-        if !self.warm {
-            let far = self.primal_residual(&self.values) > INFEASIBLE_GUESS;
-            let restored = far && self.restore(program, RESTORED);
-            self.filter.start(self.theta(&self.values));
-            if !restored {
-                self.least_squares_multipliers();
-            }
-        }
-        let mut step_length = 1.0;
-        let mut acceptable = 0;
-        let (mut short_steps, mut restorations) = (0, 0);
+        self.begin(program);
+        let mut course = Course::new();
         for iteration in 0..=options.max_iterations {
             program.linearise(
                 &self.layout,
@@ -215,67 +202,70 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
                 &mut self.scratch,
                 &mut self.lin,
             );
-            let residuals = self.residuals(0.0);
-            let entry = Iteration {
-                iteration,
-                objective: self.values.objective,
-                lagrangian: self.lagrangian(),
-                residuals,
-                mu: self.mu,
-                regularisation: self.delta,
-                step_length,
-                trust_radius: 0.0,
-            };
+            let entry = self.entry(iteration, course.step_length);
             self.log.push(entry);
+            let residuals = entry.residuals;
             let finish = |status| Outcome { status, iterations: iteration, residuals };
-            // a point of infinite cost is no solution, whatever the tolerance
-            let worst = if entry.objective.is_finite() { worst_of(&residuals) } else { f64::INFINITY };
-            if worst <= options.tolerance {
-                return finish(Status::Solved);
+            if let Some(status) = course.conclusion(&entry, options, &mut monitor) {
+                return finish(status);
             }
-            acceptable = if worst <= options.acceptable_tolerance { acceptable + 1 } else { 0 };
-            if acceptable >= 15 {
-                return finish(Status::Acceptable);
-            }
-            let fallback = |status| if acceptable > 0 { Status::Acceptable } else { status };
-            if monitor(&entry).is_break() {
-                return finish(Status::Stopped);
-            }
-            if iteration == options.max_iterations {
-                return finish(fallback(Status::IterationLimit));
-            }
-            let stuck = step_length < SHORT_STEP && residuals.primal > FAR_FROM_FEASIBLE;
-            short_steps = if stuck { short_steps + 1 } else { 0 };
-            if short_steps >= SHORT_STEPS {
+            if course.is_stuck(&residuals) {
                 // multipliers grow without bound when the method jams: reduce the violation alone and begin anew
-                let restored = restorations < MAX_RESTORATIONS && self.restore(program, RESTORED);
+                let restored = course.restorations < MAX_RESTORATIONS && self.restore(program, RESTORED);
                 if !restored && give_up_early {
                     return finish(Status::Infeasible);
                 }
-                restorations += 1;
-                short_steps = 0;
+                course.restorations += 1;
                 if restored {
-                    step_length = 1.0;
+                    course.step_length = 1.0;
                     continue;
                 }
             }
             self.update_barrier(options, residuals);
             if self.newton_direction().is_err() {
-                return finish(fallback(Status::Stalled));
+                return finish(course.fallback(Status::Stalled));
             }
             match self.advance(program) {
-                Some(alpha) => step_length = alpha,
+                Some(alpha) => course.step_length = alpha,
                 None if self.damping < RETRY_DAMPING => {
                     self.damping = (self.damping * 100.0).max(DAMPING_STEP);
-                    step_length = 0.0;
+                    course.step_length = 0.0;
                 }
-                None if self.restore(program, ADMITTED) => step_length = 1.0,
-                None if acceptable > 0 => return finish(Status::Acceptable),
-                None if residuals.primal > options.acceptable_tolerance => return finish(Status::Infeasible),
-                None => return finish(Status::Stalled),
+                None if self.restore(program, ADMITTED) => course.step_length = 1.0,
+                None if residuals.primal > options.acceptable_tolerance => {
+                    return finish(course.fallback(Status::Infeasible));
+                }
+                None => return finish(course.fallback(Status::Stalled)),
             }
         }
         unreachable_outcome()
+    }
+
+    /// Readies filter and multipliers; a guess that is far from feasible is moved towards it.
+    fn begin<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {
+        self.filter.start(self.theta(&self.values));
+        if !self.warm {
+            let far = self.primal_residual(&self.values) > INFEASIBLE_GUESS;
+            let restored = far && self.restore(program, RESTORED);
+            self.filter.start(self.theta(&self.values));
+            if !restored {
+                self.least_squares_multipliers();
+            }
+        }
+    }
+
+    /// What the log says of the present iterate, to which a step of this length has led.
+    fn entry(&self, iteration: usize, step_length: f64) -> Iteration {
+        Iteration {
+            iteration,
+            objective: self.values.objective,
+            lagrangian: self.lagrangian(),
+            residuals: self.residuals(0.0),
+            mu: self.mu,
+            regularisation: self.delta,
+            step_length,
+            trust_radius: 0.0,
+        }
     }
 
     /// Monotone decrease of mu (Fiacco and McCormick) once the barrier problem is solved well enough.
@@ -461,11 +451,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         }
         Origin { theta: self.theta(&self.values), phi: self.phi(&self.w, &self.values), slope }
     }
-}
-
-fn worst_of(r: &Residuals) -> f64 {
-    let worst = r.primal.max(r.dual).max(r.complementarity);
-    if r.primal.is_nan() || r.dual.is_nan() || r.complementarity.is_nan() { f64::INFINITY } else { worst }
 }
 
 /// The loop above always returns from inside; this is its formal end.

@@ -1,10 +1,12 @@
 //! The transcribed problem and its interior-point solver.
 //!
 //! `layout` numbers the variables, `program` evaluates and differentiates the transcribed problem segment by segment,
-//! `riccati` solves the linear-quadratic subproblem, `barrier` treats bounds, `filter` and `interior_point` are the method.
+//! `riccati` solves the linear-quadratic subproblem, `barrier` treats bounds, `filter` and `interior_point` are the method, and `course`
+//! says when it ends.
 
 pub(crate) mod barrier;
 pub(crate) mod boundary;
+mod course;
 pub(crate) mod filter;
 pub(crate) mod hermite_simpson;
 pub(crate) mod interior_point;
