@@ -148,7 +148,7 @@ impl Airspace<'_> {
     }
 
     /// No admissible motion leads from one motion to the other sooner (s).
-    fn least_time(&self, from: &Motion, to: &Motion) -> f64 {
+    pub(crate) fn least_time(&self, from: &Motion, to: &Motion) -> f64 {
         let proved = self.envelope.least_time_between(from, to);
         self.pilot.agility().map_or(proved, |agility| agility.least_time(from, to, proved))
     }

@@ -63,6 +63,7 @@ mod error;
 #[cfg(test)]
 mod exhaustive;
 mod in_view;
+mod leg_model;
 mod legs;
 mod mission;
 mod options;

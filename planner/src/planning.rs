@@ -33,25 +33,24 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
     }
     let orbits = orbits(mission)
         .map_err(|source| Error::Mission { problems: vec![Problem::Loiter { target: 0, source }] })?;
-    let envelope = envelope(mission, &orbits);
+    let mut airspace = Airspace {
+        mission,
+        orbits: &orbits,
+        pilot: Pilot::new(mission, &orbits).with_most_iterations(options.solver_iterations),
+        envelope: envelope(mission, &orbits),
+        watch: Watch::new(*options, 0),
+    };
+    let bounds = || certificate::bounds(mission, &orbits, &airspace.envelope);
+    let (routed, bounds) = both(|| routed(&airspace, options), bounds);
+    let ((routing, routes), bounds) = (routed?, bounds?);
     let pads = mission.pads();
-    let routing = Routing::new(mission, &orbits, &envelope, options);
-    let (routes, bounds) = both(|| routing.routes(), || certificate::bounds(mission, &orbits, &envelope));
-    let (routes, bounds) = (allocation::to_pads(routes?, &pads, &orbits, mission.depot), bounds?);
-    let flights = sorties::one_each(&pads, routes);
-    let airspace = |flights: &[Flight]| {
-        let mut airspace = Airspace {
-            mission,
-            orbits: &orbits,
-            pilot: Pilot::new(mission, &orbits).with_most_iterations(options.solver_iterations),
-            envelope,
-            watch: Watch::new(*options, 0),
-        };
+    let routes = allocation::to_pads(routes, &pads, &orbits, mission.depot);
+    let mut fly = |flights: Vec<Flight>| {
         let total = flights.iter().map(|flight| airspace.n_candidates(flight.route.len())).sum();
         airspace.watch = Watch::new(*options, total);
-        airspace
+        planned(&airspace, flights, &bounds)
     };
-    let mut plan = planned(&airspace(&flights), flights, &bounds)?;
+    let mut plan = fly(sorties::one_each(&pads, routes))?;
     let mut share = share_in_reach(&plan);
     if share < 1.0 && mission.swap_time.is_some() {
         let mut limit = routing.longest(&plan).unwrap_or(0.0);
@@ -59,7 +58,7 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         for _ in 0..MOST_LIMITS {
             limit *= share;
             let Some(flights) = sorties::share_out(mission, &orbits, &routing, limit) else { break };
-            plan = planned(&airspace(&flights), flights, &bounds)?;
+            plan = fly(flights)?;
             share = share_in_reach(&plan);
             if share >= 1.0 {
                 break;
@@ -71,6 +70,16 @@ pub fn plan(mission: &Mission, options: &Options) -> Result<Plan, Error> {
         plan.warnings.extend(more_vehicles(&plan, &routing, share));
     }
     Ok(plan)
+}
+
+/// The routing problem of a mission, and its routes.
+fn routed<'a>(
+    airspace: &Airspace<'a>,
+    options: &Options<'a>,
+) -> Result<(Routing<'a>, Vec<Vec<usize>>), Error> {
+    let routing = Routing::new(airspace, options);
+    let routes = routing.routes()?;
+    Ok((routing, routes))
 }
 
 /// Limits on routes that are tried until every flight keeps endurance and battery.

@@ -107,19 +107,50 @@ pub(crate) fn closest_pair(fleet: &[Option<Airborne>]) -> Option<Approach> {
 /// Start delays (s) with which every two flights stay `separation` (m) apart while both are in the air, and each starts `swap_time` (s)
 /// or more after the one `before` it, if there is one.
 ///
-/// The longest flight starts at once; each shorter one waits the fewest [`DELAY_STEP`]s that keep it apart from all flights
-/// placed before it; further sorties come after all first ones. There is always an end to the waiting: a vehicle on its pad counts for nothing.
+/// Flights are placed one after the other, the longest first, further sorties after all first ones; then whoever ends last because it
+/// waits for others is placed before them, as long as that may help (prioritised planning with rescheduling, Bennewitz, Burgard and
+/// Thrun 2002). The delays that end soonest are kept.
 pub(crate) fn start_delays(
     fleet: &[Option<Airborne>],
     separation: f64,
     before: &[Option<usize>],
     swap_time: f64,
 ) -> Vec<f64> {
-    let mut delays = vec![0.0; fleet.len()];
-    let mut order: Vec<usize> = (0..fleet.len()).filter(|&i| fleet[i].is_some()).collect();
-    let length = |i: usize| fleet[i].as_ref().map_or(0.0, |airborne| airborne.flight[1] - airborne.flight[0]);
     let sortie = |i: usize| std::iter::successors(before[i], |&earlier| before[earlier]).count();
+    let landing =
+        |delays: &[f64], i: usize| fleet[i].as_ref().map_or(0.0, |flight| flight.flight[1] + delays[i]);
+    let length = |i: usize| fleet[i].as_ref().map_or(0.0, |airborne| airborne.flight[1] - airborne.flight[0]);
+    let mut order: Vec<usize> = (0..fleet.len()).filter(|&i| fleet[i].is_some()).collect();
     order.sort_by(|&a, &b| sortie(a).cmp(&sortie(b)).then(length(b).total_cmp(&length(a))));
+    let mut best = (f64::INFINITY, vec![0.0; fleet.len()]);
+    for _ in 0..=order.len() {
+        let delays = delays_in_order(fleet, separation, &order, before, swap_time);
+        let ends = order.iter().map(|&i| (landing(&delays, i), i));
+        let Some((end, last)) = ends.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        let waits = delays[last] > 0.0;
+        if end < best.0 {
+            best = (end, delays);
+        }
+        let first = order.iter().position(|&i| sortie(i) == sortie(last));
+        let at = order.iter().position(|&i| i == last);
+        match (first, at) {
+            (Some(first), Some(at)) if waits && first < at => order[first..=at].rotate_right(1),
+            _ => break,
+        }
+    }
+    best.1
+}
+
+/// Start delays (s) of flights that are placed one after the other: each waits the fewest [`DELAY_STEP`]s that keep it apart from all
+/// that were placed before it. There is always an end to the waiting: a vehicle on its pad counts for nothing.
+fn delays_in_order(
+    fleet: &[Option<Airborne>],
+    separation: f64,
+    order: &[usize],
+    before: &[Option<usize>],
+    swap_time: f64,
+) -> Vec<f64> {
+    let mut delays = vec![0.0; fleet.len()];
     for (place, &vehicle) in order.iter().enumerate() {
         let Some(flight) = &fleet[vehicle] else { continue };
         let apart = |delay: f64| {
@@ -178,6 +209,18 @@ mod tests {
         assert_eq!(delays[1], 0.0);
         // With the crossings dt apart the least distance is 10 dt / sqrt 2: at least 5 m from 0.707 s on.
         assert_eq!(delays[0], 1.25);
+    }
+
+    /// The longer flight stands over the crossing for ten seconds; the shorter one would be over it just before.
+    #[test]
+    fn the_longer_flight_waits_where_all_land_sooner_for_it() {
+        let first = |t: f64| [10.0 * ((t - 5.0).min(0.0) + (t - 15.0).max(0.0)), 0.0, 1.0];
+        let second = |t: f64| [0.0, 10.0 * (t - 4.5), 1.0];
+        let fleet = [
+            Some(Airborne { position: Box::new(first), flight: [0.0, 20.0], top_speed: 10.0 }),
+            Some(Airborne { position: Box::new(second), flight: [0.0, 18.0], top_speed: 10.0 }),
+        ];
+        assert_eq!(start_delays(&fleet, 5.0, &[None, None], 0.0), [0.25, 0.0]);
     }
 
     #[test]

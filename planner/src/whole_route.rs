@@ -56,7 +56,7 @@ impl Airspace<'_> {
     }
 
     /// The entries of a route with the least sum of modelled leg times; the loiters take as long from any entry.
-    fn shortest_path(&self, pad: [f64; 3], route: &[usize], model: &TimeModel) -> Vec<Entry> {
+    pub(crate) fn shortest_path(&self, pad: [f64; 3], route: &[usize], model: &TimeModel) -> Vec<Entry> {
         let entries = entry::sampled(self.mission.transition.entries);
         let orbits: Vec<&Orbit> = route.iter().map(|&circle| &self.orbits[circle]).collect();
         let Some(first) = orbits.first() else { return Vec::new() };
