@@ -71,7 +71,26 @@ impl Mission {
             "from -100 to 100 (m/s)",
         );
         ranges.within("targets.merge_within", &[self.merge_within], 0.0, FARTHEST, "from 0 to 100000 (m)");
+        ranges.0.extend(self.group_problems());
         ranges.0
+    }
+
+    fn group_problems(&self) -> Vec<Problem> {
+        let Some(groups) = &self.groups else { return Vec::new() };
+        let mut times = vec![0; self.targets.len()];
+        let mut problems = Vec::new();
+        for (group, members) in groups.iter().enumerate() {
+            let known = members.iter().all(|&member| member < times.len());
+            if members.is_empty() || !known {
+                problems.push(Problem::BadGroup { group });
+            }
+            for &member in members.iter().filter(|_| known) {
+                times[member] += 1;
+            }
+        }
+        let wrong = times.into_iter().enumerate().filter(|&(_, groups)| groups != 1);
+        problems.extend(wrong.map(|(target, groups)| Problem::NotGrouped { target, groups }));
+        problems
     }
 
     fn check_fleet(&self, ranges: &mut Ranges) {

@@ -31,10 +31,14 @@ pub(crate) fn loiter_of(mission: &Mission, radius: f64) -> Result<Round, quad_dy
     Round::new(&mission.fleet.vehicle, &spec, &mission.environment)
 }
 
-/// Groups of targets that are circled as one, by first member; without merging every target is a group of its own.
+/// Groups of targets that are circled as one, by first member or as the mission gives them; without merging every target is a group of
+/// its own.
 ///
 /// Complete linkage cut at `merge_within`, so no group is wider than that.
 pub(crate) fn groups(mission: &Mission) -> Vec<Vec<usize>> {
+    if let Some(groups) = &mission.groups {
+        return groups.clone();
+    }
     let positions: Vec<[f64; 2]> = mission.targets.iter().map(|target| target.position).collect();
     let alone = || (0..positions.len()).map(|i| vec![i]).collect();
     if mission.merge_within == 0.0 {

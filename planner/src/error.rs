@@ -73,8 +73,22 @@ pub enum Problem {
         range: &'static str,
     },
     /// A plan cannot follow events.
-    #[error("the plan cannot follow events: plan the mission itself, with merge_within = 0")]
+    #[error("the plan cannot follow events: it is not the mission's; plan the mission itself")]
     NotReplannable,
+    /// Groups of targets do not share out the targets.
+    #[error("groups: target {} is in {groups} of them: put it in exactly one", target + 1)]
+    NotGrouped {
+        /// The target, from 0.
+        target: usize,
+        /// How many groups it is in.
+        groups: usize,
+    },
+    /// A group of targets has no target, or one that there is not.
+    #[error("groups: group {} is empty or names a target that there is not: give numbers from 0 to one less than the targets", group + 1)]
+    BadGroup {
+        /// The group, from 0.
+        group: usize,
+    },
     /// An event names something that there is not.
     #[error("there is no {what} {index}: number them from 0, as the mission does")]
     Unknown {
@@ -224,7 +238,7 @@ impl Problem {
             Self::OutOfRange { field, .. } => field,
             Self::NoVehicles => "fleet.vehicles",
             Self::NoTargets | Self::Unknown { .. } => "targets",
-            Self::NotReplannable => "targets.merge_within",
+            Self::NotReplannable | Self::NotGrouped { .. } | Self::BadGroup { .. } => "groups",
             Self::Loiter { source: quad_dynamics::Error::WindTooStrong { .. }, .. } => "environment.wind",
             Self::Loiter { .. } => "loiter",
             Self::CircleInsideSafeDistance { .. } => "loiter.radius",

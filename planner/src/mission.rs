@@ -48,6 +48,10 @@ pub struct Mission {
     /// Targets whose cluster has at most this diameter (m) are circled as one; 0 leaves every target alone.
     #[cfg_attr(feature = "serde", serde(default))]
     pub merge_within: f64,
+    /// Which targets are circled as one, each in exactly one group; `None` for those that `merge_within` says. A
+    /// [`Replanner`](crate::Replanner) sets it, since what is being flown is not merged anew whenever a target moves.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub groups: Option<Vec<Vec<usize>>>,
     /// What is minimised over the routes.
     #[cfg_attr(feature = "serde", serde(default))]
     pub objective: Objective,
@@ -316,6 +320,7 @@ impl Mission {
             environment: Environment::default(),
             targets,
             merge_within: 0.0,
+            groups: None,
             objective: Objective::default(),
             pipeline: Pipeline::default(),
             seed: SEED,

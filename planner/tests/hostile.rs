@@ -3,7 +3,7 @@
 use planner::quad_dynamics::{Camera, Vehicle};
 use planner::{
     CameraSettings, Direction, Entries, Error, Event, LoiterYaw, Mission, Model, Objective, Options,
-    Pipeline, Plan, Replanner, ShapingLimits, Target, Tolerances, Transcription, plan,
+    Pipeline, Plan, Problem, Replanner, ShapingLimits, Target, Tolerances, Transcription, plan,
 };
 use proptest::prelude::*;
 use quad_dynamics::SimulationOptions;
@@ -173,5 +173,23 @@ proptest! {
         }
         let stop = || true;
         prop_assert!(plan(&sound(), &options.with_should_stop(&stop)).is_err());
+    }
+}
+
+#[test]
+fn groups_must_share_out_the_targets() {
+    for (groups, wrong) in [
+        (vec![vec![0], vec![1]], vec![Problem::NotGrouped { target: 2, groups: 0 }]),
+        (vec![vec![0, 1], vec![1, 2]], vec![Problem::NotGrouped { target: 1, groups: 2 }]),
+        (vec![vec![0, 1, 2], vec![]], vec![Problem::BadGroup { group: 1 }]),
+        (
+            vec![vec![0, 7], vec![1, 2]],
+            vec![Problem::BadGroup { group: 0 }, Problem::NotGrouped { target: 0, groups: 0 }],
+        ),
+    ] {
+        let mut mission = sound();
+        mission.targets = [[15.0, 0.0], [-15.0, 0.0], [0.0, 20.0]].map(Target::at).to_vec();
+        mission.groups = Some(groups);
+        assert_eq!(mission.problems(), wrong);
     }
 }

@@ -1,6 +1,5 @@
 //! `fly`: from a mission file into the air.
 
-use super::follow::followable;
 use super::live::LivePlan;
 use super::plan::{mission, search};
 use super::sampled;
@@ -64,9 +63,6 @@ pub fn fly(request: &FlyRequest, tell: &mut dyn FnMut(&str)) -> Result<String, F
         return Err(Failure::Refused(why.to_owned()));
     }
     let listed = request.arrivals.as_deref().map(crate::events::read).transpose()?.unwrap_or_default();
-    if request.arrivals.is_some() {
-        followable(&file)?;
-    }
     let plan = search(&file, request.quiet)?;
     let tasks = tasks(&file, &plan, request.way, &request.systems, &mut |warning| {
         tell(&format!("warning: {warning}"))

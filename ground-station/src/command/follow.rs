@@ -3,7 +3,6 @@
 use crate::events::{Arrivals, Chance, TimedEvent, words};
 use crate::failure::Failure;
 use crate::input::MissionFile;
-use crate::problem::Problem;
 use planner::{Event, Mission, Plan, Replanner, Update};
 
 /// What has become of a mission after its events.
@@ -46,19 +45,6 @@ pub(super) fn follow(
         take_in(&mut replanner, &timed, &mut log);
     }
     Ok(Followed { mission: replanner.mission().clone(), plan: replanner.plan().clone(), log })
-}
-
-/// Re-planning moves circles of single targets; said before the time for a plan is spent.
-pub(super) fn followable(file: &MissionFile) -> Result<(), Failure> {
-    if file.mission.merge_within > 0.0 {
-        let key = "targets.merge_within".to_owned();
-        let message = format!(
-            "{key} = {} leaves targets without a circle of their own, and events cannot be followed: set it to 0",
-            file.mission.merge_within
-        );
-        return Err(Failure::Input(vec![Problem { file: file.file.clone(), line: None, key, message }]));
-    }
-    Ok(())
 }
 
 fn end(plan: &Plan) -> f64 {

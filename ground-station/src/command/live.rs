@@ -61,7 +61,7 @@ impl LivePlan {
     ///
     /// # Errors
     ///
-    /// [`Failure`] if the plan cannot follow events: merged targets have no circle of their own that could move.
+    /// [`Failure`] if the plan cannot follow events: it is not the mission's.
     pub fn new(
         file: &MissionFile,
         plan: Plan,

@@ -1,6 +1,6 @@
 //! `simulate`: a plan flown by a simulated team in wind and gusts, re-planned as targets come, go and move.
 
-use super::follow::{Followed, follow, followable};
+use super::follow::{Followed, follow};
 use super::plan::{mission, search};
 use crate::events::Arrivals;
 use crate::export::folder::{self, OutputFile};
@@ -51,9 +51,6 @@ pub fn simulate(request: &SimulateRequest) -> Result<String, Failure> {
     let listed = request.arrivals.as_deref().map(crate::events::read).transpose()?.unwrap_or_default();
     let arrivals = Arrivals { rate: request.arrival_rate, seed: request.seed };
     let is_eventful = request.arrivals.is_some() || request.arrival_rate > 0.0;
-    if is_eventful {
-        followable(&file)?;
-    }
     let plan = search(&file, request.quiet)?;
     let Followed { mission, plan, log } =
         if is_eventful { follow(&file, plan, listed, arrivals)? } else { Followed::nothing(&file, plan) };

@@ -7,6 +7,9 @@ use crate::plan::{Plan, VehiclePlan};
 use crate::sorties::pause;
 use crate::time_model::TimeModel;
 
+/// What a circle's move from flight to flight must save to be made (s): solved legs scatter by a few tenths of a second.
+const WORTHWHILE: f64 = 0.25;
+
 /// A place in a flight's open route.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
@@ -32,25 +35,24 @@ struct Round {
 }
 
 impl Rounds<'_> {
-    /// The place where a target costs least: first in flights that are too long, then in what the mission minimises, then in added
+    /// The place where a circle costs least: first in flights that are too long, then in what the mission minimises, then in added
     /// time. `None` if nobody can fly.
     pub(super) fn cheapest(
         &self,
         plan: &Plan,
         team: &[Settled],
         usable: &[bool],
-        target: usize,
+        circle: usize,
     ) -> Option<Place> {
         let before = self.ends(plan, team, None);
         let [long, makespan, total] = sums(&before);
         let mut best: Option<([f64; 3], Place)> = None;
         for (flight, settled) in team.iter().enumerate() {
-            let planned = &plan.vehicles[flight];
-            if !usable[planned.vehicle] || settled.landed || planned.lost_at.is_some() {
+            if !can_take(plan, team, usable, flight) {
                 continue;
             }
             for position in 0..=settled.open.len() {
-                let rounds = self.ends(plan, team, Some((flight, &with(&settled.open, position, target))));
+                let rounds = self.ends(plan, team, Some((flight, &with(&settled.open, position, circle))));
                 let [long_then, makespan_then, total_then] = sums(&rounds);
                 let (long, added) = (long_then - long, total_then - total);
                 let cost = match self.airspace.mission.objective {
@@ -65,32 +67,50 @@ impl Rounds<'_> {
         best.map(|(_, place)| place)
     }
 
-    /// Moves open circles of the flight that ends last to one that can help, as long as that makes the mission shorter.
-    pub(super) fn relieve(&self, plan: &Plan, team: &mut [Settled], helper: usize) {
-        loop {
-            let rounds = self.ends(plan, team, None);
-            let end = |flight: usize| rounds[flight].end;
-            let Some(last) = (0..team.len()).max_by(|&a, &b| end(a).total_cmp(&end(b))) else { return };
-            if last == helper {
-                return;
-            }
-            let mut best = (end(last) * (1.0 - 1e-9), None);
-            for from in 0..team[last].open.len() {
-                let circle = team[last].open.remove(from);
-                for position in 0..=team[helper].open.len() {
-                    let longer = with(&team[helper].open, position, circle);
-                    let rounds = self.ends(plan, team, Some((helper, &longer)));
-                    let end = rounds[last].end.max(rounds[helper].end);
-                    if end < best.0 {
-                        best = (end, Some((from, position)));
+    /// Moves open circles to flights of `helpers`, from the one that ends last where the mission minimises its makespan and from any other
+    /// where it minimises the sum, as long as each move saves more than legs scatter around the model.
+    pub(super) fn relieve(&self, plan: &Plan, team: &mut [Settled], usable: &[bool], helpers: &[usize]) {
+        let mut helpers = helpers.to_vec();
+        helpers.retain(|&flight| can_take(plan, team, usable, flight));
+        while let Some((from, to)) = self.best_move(plan, team, &helpers) {
+            let circle = team[from.flight].open.remove(from.position);
+            team[to.flight].open.insert(to.position, circle);
+        }
+    }
+
+    /// From where to where a circle should move.
+    fn best_move(&self, plan: &Plan, team: &mut [Settled], helpers: &[usize]) -> Option<(Place, Place)> {
+        let before = self.ends(plan, team, None);
+        let is_makespan = self.airspace.mission.objective == Objective::Makespan;
+        let last = (0..team.len()).max_by(|&a, &b| before[a].end.total_cmp(&before[b].end))?;
+        let givers = (0..team.len()).filter(|&flight| !is_makespan || flight == last);
+        let mut best = (WORTHWHILE, None);
+        for from in givers {
+            for index in 0..team[from].open.len() {
+                let circle = team[from].open.remove(index);
+                for &to in helpers {
+                    let pair = if from == to { vec![from] } else { vec![from, to] };
+                    let cost = |rounds: &[Round]| {
+                        let ends = pair.iter().map(|&flight| rounds[flight].end);
+                        if is_makespan { ends.fold(0.0, f64::max) } else { ends.sum::<f64>() }
+                    };
+                    let too_long =
+                        |rounds: &[Round]| pair.iter().filter(|&&flight| rounds[flight].is_too_long).count();
+                    for position in 0..=team[to].open.len() {
+                        let longer = with(&team[to].open, position, circle);
+                        let rounds = self.ends(plan, team, Some((to, &longer)));
+                        let saved = cost(&before) - cost(&rounds);
+                        if saved > best.0 && too_long(&rounds) <= too_long(&before) {
+                            let [from, to] = [(from, index), (to, position)]
+                                .map(|(flight, position)| Place { flight, position });
+                            best = (saved, Some((from, to)));
+                        }
                     }
                 }
-                team[last].open.insert(from, circle);
+                team[from].open.insert(index, circle);
             }
-            let Some((from, position)) = best.1 else { return };
-            let circle = team[last].open.remove(from);
-            team[helper].open.insert(position, circle);
         }
+        best.1
     }
 
     /// All flights, one of them with another open route.
@@ -146,6 +166,12 @@ fn sums(rounds: &[Round]) -> [f64; 3] {
     let long = rounds.iter().filter(|round| round.is_too_long).count() as f64;
     let latest = rounds.iter().map(|round| round.end).fold(0.0, f64::max);
     [long, latest, rounds.iter().map(|round| round.end).sum()]
+}
+
+/// Whether a flight can still take circles.
+fn can_take(plan: &Plan, team: &[Settled], usable: &[bool], flight: usize) -> bool {
+    let planned = &plan.vehicles[flight];
+    usable[planned.vehicle] && !team[flight].landed && planned.lost_at.is_none()
 }
 
 /// A route with a circle put in.

@@ -21,7 +21,7 @@ mod skies;
 mod sorties;
 
 use crate::airs::Airs;
-use crate::circles::orbits;
+use crate::circles::{groups, orbits};
 use crate::error::{Error, Problem};
 use crate::legs::{Airspace, side_by_side};
 use crate::mission::{Mission, Target};
@@ -46,14 +46,15 @@ pub enum Event {
     /// A target need not be circled any more; its safe distance is kept all the same.
     TargetVanishes(usize),
     /// A target is somewhere else: east, north (m). One that has been circled is not circled again: it becomes another target,
-    /// which only has a safe distance.
+    /// which only has a safe distance. One that was merged with others leaves them.
     TargetMoves(usize, [f64; 2]),
     /// A vehicle drops out, in the air or on its pad; others take over what it has not completed.
     VehicleFails(usize),
     /// A vehicle that has not flown yet may (again) be used.
     VehicleReturns(usize),
     /// The steady wind is another one: towards east, north (m/s). Legs that have been started are flown to their ends as they were
-    /// planned, later ones are planned for the new wind, in the same order and from the same entries where they can be.
+    /// planned, later ones are planned for the new wind, from the same entries where they can be, and in the same order but for targets
+    /// that others can take over with profit.
     WindChanges([f64; 2]),
 }
 
@@ -77,13 +78,15 @@ pub struct Update {
 /// [`Replanner::REACTION`] seconds away. Vehicles that would come too close wait for each other, on a pad or by further turns of a
 /// loiter. Where batteries are swapped ([`Mission::swap_time`]) a target that fits into no flight within the endurance, and one battery
 /// at the plan's greatest mean power, gets another flight; later flights of a vehicle follow the one before. No waiting target is lost,
-/// and none that has been circled is circled again.
+/// and none that has been circled is circled again. Targets that are circled as one stay together ([`Mission::groups`]); one that appears
+/// joins a circle that is still open if none of its targets is farther away than [`Mission::merge_within`].
 #[derive(Debug, Clone)]
 pub struct Replanner {
     mission: Mission,
     plan: Plan,
     model: TimeModel,
     usable: Vec<bool>,
+    /// Circles that nobody can fly now.
     waiting: Vec<usize>,
     /// No flight should take longer (s).
     limit: f64,
@@ -98,9 +101,8 @@ impl Replanner {
     /// Takes over a plan that is about to be flown.
     ///
     /// # Errors
-    /// [`Error::Mission`] with all that is wrong with the mission, if the plan is not the mission's, or if the mission merges targets
-    /// (`merge_within` above 0): then a target has no circle of its own that could move.
-    pub fn new(mission: Mission, plan: Plan) -> Result<Self, Error> {
+    /// [`Error::Mission`] with all that is wrong with the mission, or if the plan is not the mission's.
+    pub fn new(mut mission: Mission, plan: Plan) -> Result<Self, Error> {
         let problems = mission.problems();
         if !problems.is_empty() {
             return Err(Error::Mission { problems });
@@ -109,9 +111,11 @@ impl Replanner {
         let is_its =
             |(i, planned): (usize, &VehiclePlan)| planned.vehicle == i || (i >= n && planned.vehicle < n);
         let fits = plan.vehicles.len() >= n && plan.vehicles.iter().enumerate().all(is_its);
-        if mission.merge_within > 0.0 || plan.circles.len() != mission.targets.len() || !fits {
+        let groups = groups(&mission);
+        if !plan.circles.iter().map(|circle| &circle.members).eq(&groups) || !fits {
             return Err(Error::Mission { problems: vec![Problem::NotReplannable] });
         }
+        mission.groups = Some(groups);
         let usable = vec![true; n];
         let limit = longest_flight(&plan, &mission);
         let model = {
@@ -174,21 +178,24 @@ impl Replanner {
         Ok(update)
     }
 
-    /// Changes the mission, and says which targets must find a place, which lose theirs, and whether to share out anew.
+    /// Changes the mission, and says which circles must find a place, which lose theirs, and who may take some from others.
     fn take_in(&mut self, time: f64, event: &Event) -> Result<Changes, Error> {
         let mut changes = Changes { wanted: std::mem::take(&mut self.waiting), ..Changes::default() };
         match *event {
             Event::TargetAppears(ref target) => {
-                changes.wanted.push(self.mission.targets.len());
-                changes.keep_outs.push(self.mission.targets.len());
+                let appeared = self.mission.targets.len();
                 self.mission.targets.push(target.clone());
+                self.find_circle(time, appeared, &mut changes);
             }
             Event::TargetVanishes(target) => {
-                self.known(target < self.mission.targets.len(), "target", target)?;
-                changes.wanted.retain(|&waiting| waiting != target);
-                changes.gone.push(target);
+                let circle = self.circle_of(target)?;
                 if !self.plan.skipped.contains(&target) {
                     self.plan.skipped.push(target);
+                }
+                // A circle is flown for whoever is left in it.
+                if self.members(circle).iter().all(|member| self.plan.skipped.contains(member)) {
+                    changes.wanted.retain(|&waiting| waiting != circle);
+                    changes.gone.push(circle);
                 }
             }
             Event::TargetMoves(target, position) => {
@@ -196,14 +203,14 @@ impl Replanner {
             }
             Event::VehicleFails(vehicle) => self.lose(time, vehicle, &mut changes)?,
             Event::VehicleReturns(vehicle) => {
-                self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
+                known(vehicle < self.usable.len(), "vehicle", vehicle)?;
                 let own = || self.plan.vehicles.iter().filter(|planned| planned.vehicle == vehicle);
-                self.known(own().all(|planned| planned.legs.is_empty()), "vehicle on its pad", vehicle)?;
+                known(own().all(|planned| planned.legs.is_empty()), "vehicle on its pad", vehicle)?;
                 for planned in self.plan.vehicles.iter_mut().filter(|planned| planned.vehicle == vehicle) {
                     planned.lost_at = None;
                 }
                 self.usable[vehicle] = true;
-                changes.relieved_by = Some(vehicle);
+                changes.relieved_by = vec![vehicle];
             }
             Event::WindChanges(wind) => {
                 let earlier = std::mem::replace(&mut self.mission.environment.wind, wind);
@@ -211,6 +218,7 @@ impl Replanner {
                 self.plan.earlier_winds.push((latest, earlier));
                 self.model = self.model.in_wind(wind.into());
                 changes.wind = true;
+                changes.relieved_by = (0..self.plan.vehicles.len()).collect();
             }
         }
         for &target in &changes.keep_outs {
@@ -228,26 +236,79 @@ impl Replanner {
         (target, position): (usize, [f64; 2]),
         changes: &mut Changes,
     ) -> Result<(), Error> {
-        self.known(target < self.mission.targets.len(), "target", target)?;
-        if self.plan.skipped.contains(&target) || self.is_settled(target, time) {
+        let circle = self.circle_of(target)?;
+        if self.plan.skipped.contains(&target) || self.is_settled(circle, time) {
             // Nobody circles it there; others keep their distance.
-            self.plan.skipped.push(self.mission.targets.len());
-            changes.keep_outs.push(self.mission.targets.len());
-            let moved = Target { position, ..self.mission.targets[target].clone() };
-            self.mission.targets.push(moved);
-        } else {
-            self.mission.targets[target].position = position;
+            let moved = self.mission.targets.len();
+            self.plan.skipped.push(moved);
+            changes.keep_outs.push(moved);
+            self.mission.targets.push(Target { position, ..self.mission.targets[target].clone() });
+            self.groups().push(vec![moved]);
+            return Ok(());
+        }
+        self.mission.targets[target].position = position;
+        changes.renew(circle);
+        if self.members(circle).len() == 1 {
             changes.keep_outs.push(target);
-            changes.gone.push(target);
-            changes.wanted.retain(|&waiting| waiting != target);
-            changes.wanted.push(target);
+        } else {
+            self.groups()[circle].retain(|&member| member != target);
+            self.find_circle(time, target, changes);
         }
         Ok(())
     }
 
+    /// A target that is in no group yet joins the closest circle that is still open and to whose targets it is close enough, or gets a
+    /// circle of its own.
+    fn find_circle(&mut self, time: f64, target: usize, changes: &mut Changes) {
+        changes.keep_outs.push(target);
+        let [x, y] = self.mission.targets[target].position;
+        // The farthest of a circle's targets; the targets of circles to come are not in the plan's circles.
+        let farthest = |circle: usize| {
+            let distances = self.members(circle).iter().map(|&member| {
+                let [a, b] = self.mission.targets[member].position;
+                (x - a).hypot(y - b)
+            });
+            distances.fold(0.0, f64::max)
+        };
+        let is_open = |circle: usize| {
+            let gone = self.members(circle).iter().all(|member| self.plan.skipped.contains(member));
+            !gone && !self.is_settled(circle, time)
+        };
+        let circles = 0..self.mission.groups.as_ref().map_or(0, Vec::len);
+        let near = circles.map(|circle| (farthest(circle), circle));
+        let near = near.filter(|&(distance, circle)| distance < self.mission.merge_within && is_open(circle));
+        match near.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((_, circle)) => {
+                let members = &mut self.groups()[circle];
+                members.push(target);
+                members.sort_unstable();
+                changes.renew(circle);
+            }
+            None => {
+                self.groups().push(vec![target]);
+                changes.wanted.push(self.groups().len() - 1);
+            }
+        }
+    }
+
+    /// The targets that are circled as one, by circle.
+    fn groups(&mut self) -> &mut Vec<Vec<usize>> {
+        self.mission.groups.get_or_insert_default()
+    }
+
+    fn members(&self, circle: usize) -> &[usize] {
+        self.mission.groups.as_ref().and_then(|groups| groups.get(circle)).map_or(&[], Vec::as_slice)
+    }
+
+    fn circle_of(&self, target: usize) -> Result<usize, Error> {
+        let groups = self.mission.groups.iter().flatten();
+        let circle = groups.enumerate().find(|(_, members)| members.contains(&target));
+        circle.map(|(circle, _)| circle).ok_or_else(|| unknown("target", target))
+    }
+
     /// What a lost vehicle has not completed must find a place with others.
     fn lose(&mut self, time: f64, vehicle: usize, changes: &mut Changes) -> Result<(), Error> {
-        self.known(vehicle < self.usable.len(), "vehicle", vehicle)?;
+        known(vehicle < self.usable.len(), "vehicle", vehicle)?;
         self.usable[vehicle] = false;
         for planned in self.plan.vehicles.iter_mut().filter(|planned| planned.vehicle == vehicle) {
             let done = planned.legs.iter().take_while(|leg| leg.end_time() <= time).count();
@@ -260,17 +321,10 @@ impl Replanner {
         Ok(())
     }
 
-    fn known(&self, is_known: bool, what: &'static str, index: usize) -> Result<(), Error> {
-        if is_known {
-            return Ok(());
-        }
-        Err(Error::Mission { problems: vec![Problem::Unknown { what, index }] })
-    }
-
-    /// Whether a target has been circled, or is being circled, at a time.
-    fn is_settled(&self, target: usize, time: f64) -> bool {
+    /// Whether a circle has been flown, or is being flown, at a time.
+    fn is_settled(&self, circle: usize, time: f64) -> bool {
         let legs = self.plan.vehicles.iter().flat_map(|vehicle| &vehicle.legs);
-        legs.filter(|leg| leg.loiter.is_some_and(|loiter| loiter.circle == target))
+        legs.filter(|leg| leg.loiter.is_some_and(|loiter| loiter.circle == circle))
             .any(|leg| leg.arrival_time() <= time)
     }
 
@@ -290,16 +344,14 @@ impl Replanner {
         }
         let rounds = Rounds { airspace, model: &self.model, limit };
         let mut waiting = Vec::new();
-        for &target in &changes.wanted {
+        for &circle in &changes.wanted {
             add_sorties(plan, &mut team, &self.mission, &self.usable, from);
-            match rounds.cheapest(plan, &team, &self.usable, target) {
-                Some(place) => team[place.flight].open.insert(place.position, target),
-                None => waiting.push(target),
+            match rounds.cheapest(plan, &team, &self.usable, circle) {
+                Some(place) => team[place.flight].open.insert(place.position, circle),
+                None => waiting.push(circle),
             }
         }
-        if let Some(vehicle) = changes.relieved_by {
-            rounds.relieve(plan, &mut team, vehicle);
-        }
+        rounds.relieve(plan, &mut team, &self.usable, &changes.relieved_by);
         drop_unused(plan, &mut team, known);
         let ways = Ways::of(airspace, &team, self.ways.as_ref());
         let bounds = Outlook::new(&ways, airspace, &self.plan, (&team, &self.usable), time).bounds();
@@ -323,11 +375,14 @@ impl Replanner {
         vehicles.dedup();
         self.plan.closest_approach = closest;
         let conflict = closest.filter(|approach| approach.distance < self.mission.fleet.separation);
-        self.waiting.clone_from(&waiting);
+        let is_wanted = |member: &usize| !self.plan.skipped.contains(member);
+        let targets = waiting.iter().flat_map(|&circle| self.members(circle)).copied().filter(is_wanted);
+        let targets = targets.collect();
+        self.waiting = waiting;
         certify(&mut self.plan, &bounds);
         self.ways = Some(ways);
         warnings::renew(&mut self.plan, &self.mission, &vehicles);
-        Ok(Update { vehicles, waiting, conflict })
+        Ok(Update { vehicles, waiting: targets, conflict })
     }
 }
 
@@ -382,21 +437,38 @@ fn longest_flight(plan: &Plan, mission: &Mission) -> f64 {
 /// What an event asks for.
 #[derive(Debug, Default)]
 struct Changes {
-    /// Targets that must find a place in a route.
+    /// Circles that must find a place in a route.
     wanted: Vec<usize>,
-    /// Targets that lose theirs.
+    /// Circles that lose theirs.
     gone: Vec<usize>,
     /// Targets whose safe distance is a new one.
     keep_outs: Vec<usize>,
-    /// A vehicle that can take targets from others.
-    relieved_by: Option<usize>,
+    /// Flights that may take circles from others.
+    relieved_by: Vec<usize>,
     /// Whether later legs are flown in another wind.
     wind: bool,
 }
 
+impl Changes {
+    /// A circle that is another one now finds a new place.
+    fn renew(&mut self, circle: usize) {
+        self.gone.push(circle);
+        self.wanted.retain(|&waiting| waiting != circle);
+        self.wanted.push(circle);
+    }
+}
+
+fn known(is_known: bool, what: &'static str, index: usize) -> Result<(), Error> {
+    if is_known { Ok(()) } else { Err(unknown(what, index)) }
+}
+
+fn unknown(what: &'static str, index: usize) -> Error {
+    Error::Mission { problems: vec![Problem::Unknown { what, index }] }
+}
+
 /// Whether every circle can be flown in every wind: a vehicle may still be on a leg that was planned for an earlier one.
 fn flyable(airs: &Airs) -> Result<(), Error> {
-    for air in airs.iter().filter(|air| air.orbits.len() != air.mission.targets.len()) {
+    for air in airs.iter().filter(|air| air.orbits.len() != groups(&air.mission).len()) {
         let of_loiter = |source| Error::Mission { problems: vec![Problem::Loiter { target: 0, source }] };
         orbits(&air.mission).map_err(of_loiter)?;
     }
