@@ -84,14 +84,15 @@ impl Setting {
         step / (SAFETY * excess(&transition.miss).max(1.0).powf(0.25))
     }
 
-    /// Pushes one keep-out's boundary outwards by what it was entered, and a little more; adds it if it was not considered. Where
-    /// knots are so far apart that it was entered between two of them, as far as the nearer one: a boundary that no knot touches
-    /// moves nothing.
+    /// Puts one keep-out's boundary where the chord between two knots on it, as far apart as now, passes the keep-out by, and a little
+    /// farther; adds the keep-out if it was not considered. A chord that comes as close as `d` where its nearer knot is `r` away reaches
+    /// to the square root of `r^2 - d^2` on that side.
     fn enlarge(&mut self, entered: KeepOut, by: f64, transition: &Transition) {
         let [x, y] = entered.centre;
         let distances = transition.states.iter().map(|state| (state[0] - x).hypot(state[1] - y));
         let nearest = distances.fold(f64::INFINITY, f64::min);
-        let farther = |radius: f64| radius.max(nearest) + 1.3 * by + 0.01;
+        let reach = (nearest.powi(2) - (entered.radius - by).powi(2)).max(0.0).sqrt();
+        let farther = |radius: f64| radius.max(entered.radius.hypot(reach)) + 0.01;
         match self.keep_outs.iter_mut().find(|keep_out| keep_out.centre == entered.centre) {
             Some(keep_out) => keep_out.radius = farther(keep_out.radius),
             None => self.keep_outs.push(KeepOut { radius: farther(entered.radius), ..entered }),
@@ -149,8 +150,8 @@ mod tests {
         }
     }
 
-    /// How far the boundary of a keep-out of 1.5 m around the origin is pushed when it is entered by 3 mm.
-    fn pushed(places: &[[f64; 2]]) -> f64 {
+    /// Where the boundary of a keep-out of 1.5 m around the origin is put when it is entered by so much (m).
+    fn pushed(places: &[[f64; 2]], by: f64) -> f64 {
         let keep_out = KeepOut { centre: [0.0, 0.0], radius: 1.5 };
         let surroundings = Surroundings {
             keep_outs: &[keep_out],
@@ -164,7 +165,7 @@ mod tests {
             length: 1.0,
             max_speed: 10.0,
             max_tilt: 0.0,
-            clearance: -0.003,
+            clearance: -by,
             closest: Some(0),
             height_violation: 0.0,
             limit_violation: 0.0,
@@ -175,10 +176,14 @@ mod tests {
         setting.keep_outs[0].radius
     }
 
+    /// Two knots on the new boundary that lie as far apart as before pass the keep-out by.
     #[test]
-    fn a_boundary_reaches_a_knot() {
-        // a knot on the boundary, and none within 9 m: one of them must be moved
-        assert!((pushed(&[[-20.0, 1.5], [0.0, 1.5], [20.0, 1.5]]) - 1.5139).abs() < 1e-9);
-        assert!((pushed(&[[-9.0, 1.497], [11.0, 1.497]]) - 9f64.hypot(1.497) - 0.0139).abs() < 1e-9);
+    fn a_boundary_is_put_where_chords_pass_by() {
+        // a knot beside the keep-out, one inside it, and none within 9 m
+        for (east, north) in [(0.0, 1.5), (0.4, 0.2), (9.0, 1.497)] {
+            let radius = pushed(&[[-20.0, north], [east, north], [20.0, north]], 1.5 - north.min(1.497));
+            let passed = (radius.powi(2) - east.powi(2)).sqrt();
+            assert!((1.5..1.6).contains(&passed), "{east} {north}: {radius} m, passed at {passed} m");
+        }
     }
 }
