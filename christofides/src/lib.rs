@@ -46,7 +46,7 @@
 //! # Ok::<(), christofides::Error>(())
 //! ```
 //!
-//! Distances come as [`Points`], a [`Matrix`], a function ([`FromFn`]) or your own [`Metric`].
+//! Distances come as [`Points`], a [`Matrix`], a function ([`FromFn`]), a file of TSPLIB ([`tsplib`]) or your own [`Metric`].
 //!
 //! # What is guaranteed
 //!
@@ -84,7 +84,7 @@
 //! B. Kernighan (1973), *An effective heuristic algorithm for the traveling-salesman problem*. D. Applegate, W. Cook and
 //! A. Rohe (2003), *Chained Lin-Kernighan for large traveling salesman problems*. M. Held and R. Karp (1970, 1971), *The
 //! traveling-salesman problem and minimum spanning trees*. T. Volgenant and R. Jonker (1982), *A branch and bound algorithm
-//! for the symmetric traveling salesman problem based on the 1-tree relaxation*.
+//! for the symmetric traveling salesman problem based on the 1-tree relaxation*. G. Reinelt (1991), *TSPLIB*.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -107,6 +107,7 @@ mod points;
 mod shortcut;
 mod spanning_tree;
 mod tour;
+pub mod tsplib;
 mod validate;
 mod workspace;
 

@@ -1,5 +1,6 @@
 //! The bounds of the algorithm, on generated metrics.
 
+use christofides::tsplib::Instance;
 use christofides::{
     Ends, Error, FromFn, Matrix, Metric, Options, Path, Points, chained_improve, christofides, exact_path,
     exact_tour, held_karp, improve, improve_path, min_weight_perfect_matching, minimum_spanning_tree, solve,
@@ -205,13 +206,9 @@ fn what_is_no_metric_is_refused() {
     assert_eq!(christofides(&Points(&huge)), Err(Error::Overflow));
 }
 
-/// Reads the points of a TSPLIB file.
-fn tsplib(name: &str) -> Vec<[f64; 2]> {
+fn tsplib(name: &str) -> Instance {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
-    let text = std::fs::read_to_string(file).unwrap();
-    let (_, body) = text.split_once("NODE_COORD_SECTION").unwrap();
-    let numbers: Vec<f64> = body.split_whitespace().map_while(|word| word.parse().ok()).collect();
-    numbers.chunks_exact(3).map(|row| [row[1], row[2]]).collect()
+    Instance::read(&std::fs::read_to_string(file).unwrap()).unwrap()
 }
 
 #[test]
@@ -219,9 +216,9 @@ fn tsplib_optima_are_found() {
     for (name, optimum) in
         [("eil51.tsp", 426.0), ("berlin52.tsp", 7542.0), ("st70.tsp", 675.0), ("kroA100.tsp", 21282.0)]
     {
-        let points = tsplib(name);
-        let rounded = FromFn::symmetric(points.len(), |i, j| (Points(&points).distance(i, j) + 0.5).floor());
-        let start = christofides(&Points(&points)).unwrap();
+        let instance = tsplib(name);
+        let rounded = instance.metric(true);
+        let start = christofides(&instance.metric(false)).unwrap();
         let start = christofides::Tour::new(&rounded, start.into_order()).unwrap();
         let tour = chained_improve(&rounded, start, 2000, 1, &mut || false).unwrap();
         assert_eq!(tour.cost(), optimum, "{name}");

@@ -2,11 +2,9 @@
 //!
 //! The instances are transcribed; that the transcription is right is shown by the proven optimum, which is the published length.
 
-#[path = "../examples/tour/instance.rs"]
-mod instance;
-
+use christofides::tsplib::{Error, Instance};
 use christofides::{Metric, Options, chained_improve, christofides, exact_tour, held_karp, solve};
-use instance::Instance;
+use proptest::prelude::*;
 
 /// Cities of burma14, degrees and minutes.
 const BURMA14: &str =
@@ -118,12 +116,44 @@ fn explicit() {
     }
 }
 
+/// A full matrix is taken as it is: one way may be longer than the other.
+#[test]
+fn asymmetric() {
+    let instance = with_matrix("FULL_MATRIX", 2, "7 1 2 9");
+    let metric = instance.metric(true);
+    assert_eq!([metric.distance(0, 1), metric.distance(1, 0), metric.distance(1, 1)], [1.0, 2.0, 0.0]);
+    assert!(exact_tour(&metric).is_err());
+}
+
+const TRIANGLE: &str =
+    "NAME: t\nDIMENSION: 3\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n1 0 0\n2 3 4\n3 0 1.4\nEOF\n";
+
 #[test]
 fn malformed_files_are_refused() {
-    let points = "DIMENSION: 3\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n1 0 0\n2 0 1\nEOF";
-    let kind = "DIMENSION: 1\nEDGE_WEIGHT_TYPE: XRAY1\nNODE_COORD_SECTION\n1 0 0\nEOF";
     let matrix = "DIMENSION: 3\nEDGE_WEIGHT_TYPE: EXPLICIT\nEDGE_WEIGHT_FORMAT: UPPER_ROW\nEDGE_WEIGHT_SECTION\n1 2\nEOF";
-    for text in [points, kind, matrix, "1 2\n"] {
-        assert!(Instance::read(text).is_err());
+    let vast = matrix.replace(": 3", ": 18446744073709551615");
+    let needed = u128::from(u64::MAX) * u128::from(u64::MAX - 1) / 2;
+    for (text, wrong) in [
+        (TRIANGLE.replace("EUC_2D", "XRAY1"), Error::Kind("XRAY1".to_owned())),
+        (TRIANGLE.replace(": 3", ": x"), Error::Dimension),
+        (TRIANGLE.replace(": 3", ": 4"), Error::Points { announced: 4, found: 3 }),
+        (TRIANGLE.replace("1.4", "inf"), Error::NotFinite),
+        (matrix.to_owned(), Error::Weights { needed: 3, found: 2 }),
+        (vast, Error::Weights { needed, found: 2 }),
+        (matrix.replace("UPPER_ROW", "UPPER_COL"), Error::Format("UPPER_COL".to_owned())),
+        ("1 2\n".to_owned(), Error::Kind(String::new())),
+    ] {
+        assert_eq!(Instance::read(&text), Err(wrong), "{text}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_text_makes_it_panic(place in 0usize..100, text in "[0-9A-Z_: \n.-]{0,20}") {
+        let mut source = TRIANGLE.to_owned();
+        source.insert_str(place % source.len(), &text);
+        if let Ok(instance) = Instance::read(&source) {
+            prop_assert!(instance.metric(true).len() == instance.len());
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! `routes` and `tour`: the solvers on files of points.
 
 use crate::failure::{Failure, reason};
+use crate::nodes::Nodes;
 use crate::problem::Problem;
-use crate::tsplib::Instance;
 use planner::christofides::{self, Metric};
 use planner::mtsp::{self, Objective};
 use serde_json::json;
@@ -23,14 +23,14 @@ pub struct SolveRequest {
     pub json: bool,
 }
 
-fn instance(request: &SolveRequest) -> Result<Instance, Failure> {
+fn nodes(request: &SolveRequest) -> Result<Nodes, Failure> {
     let file = request.file.display().to_string();
     let read = |path: &Path| std::fs::read_to_string(path);
     let text = read(&request.file).map_err(|error| {
         let message = format!("cannot be read ({}): give a TSPLIB file or a table of points", reason(&error));
         Failure::Input(vec![Problem { file: file.clone(), line: None, key: String::new(), message }])
     })?;
-    Instance::read(&file, &text, request.is_rounded).map_err(|problem| Failure::Input(vec![problem]))
+    Nodes::read(&file, &text, request.is_rounded).map_err(|problem| Failure::Input(vec![problem]))
 }
 
 /// A short tour through all nodes, with its lower bound.
@@ -39,26 +39,26 @@ fn instance(request: &SolveRequest) -> Result<Instance, Failure> {
 ///
 /// [`Failure::Input`] for a file that cannot be used.
 pub fn tour(request: &SolveRequest) -> Result<String, Failure> {
-    let instance = instance(request)?;
+    let nodes = nodes(request)?;
+    let metric = nodes.metric();
     let kicks = usize::try_from(request.iterations).unwrap_or(usize::MAX);
     let options = christofides::Options::default().with_seed(request.seed).with_kicks(kicks);
-    let tour = christofides::solve(&instance, &options, &mut || false)
+    let tour = christofides::solve(&metric, &options, &mut || false)
         .map_err(|error| Failure::Refused(format!("{}: {error}", request.file.display())))?;
-    // Rounded distances add up to a whole number.
-    let bound =
-        tour.lower_bound().map(|bound| if request.is_rounded { (bound - 1e-6).ceil() } else { bound });
+    let whole = |bound: f64| if metric.are_whole() { (bound - 1e-6).ceil() } else { bound };
+    let bound = tour.lower_bound().map(whole);
     let gap = bound.filter(|&bound| bound > 0.0).map(|bound| (tour.cost() / bound - 1.0).max(0.0));
     let order: Vec<usize> = tour.order().iter().map(|node| node + 1).collect();
     if request.json {
         return Ok(format!(
             "{}\n",
-            json!({"nodes": instance.len(), "length": tour.cost(), "lower_bound": bound, "gap": gap, "tour": order})
+            json!({"nodes": metric.len(), "length": tour.cost(), "lower_bound": bound, "gap": gap, "tour": order})
         ));
     }
     let order: Vec<String> = order.iter().map(ToString::to_string).collect();
     Ok(format!(
         "nodes        {}\nlength       {:.3}\nlower bound  {:.3}\ngap          {:.3} %\ntour         {}\n",
-        instance.len(),
+        metric.len(),
         tour.cost(),
         bound.unwrap_or(0.0),
         100.0 * gap.unwrap_or(0.0),
@@ -77,9 +77,10 @@ pub fn routes(
     objective: Objective,
     is_open: bool,
 ) -> Result<String, Failure> {
-    let instance = instance(request)?;
+    let nodes = nodes(request)?;
+    let metric = nodes.metric();
     let refused = |error: mtsp::Error| Failure::Refused(format!("{}: {error}", request.file.display()));
-    let mut problem = mtsp::Problem::new(&instance, vehicles).map_err(refused)?;
+    let mut problem = mtsp::Problem::new(&metric, vehicles).map_err(refused)?;
     if is_open {
         problem = problem.with_open_routes();
     }
@@ -96,7 +97,7 @@ pub fn routes(
         return Ok(format!(
             "{}\n",
             json!({
-                "nodes": instance.len(), "vehicles": vehicles, "value": value, "lower_bound": bound, "gap": gap,
+                "nodes": metric.len(), "vehicles": vehicles, "value": value, "lower_bound": bound, "gap": gap,
                 "makespan": solution.makespan, "total": solution.total_cost, "lengths": solution.lengths, "routes": routes,
             })
         ));

@@ -6,10 +6,8 @@
 //! The bound takes time of its own, `--ascent` times a minimum spanning tree (default 600, more do not raise it by 1e-4); at 100 000
 //! vertices a few tens of iterations are a cheap bound, and `--no-bound` leaves it out.
 
-mod instance;
-
+use christofides::tsplib::Instance;
 use christofides::{Tour, chained_improve, christofides, held_karp};
-use instance::Instance;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
@@ -35,7 +33,9 @@ struct Report {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = parse(std::env::args().skip(1))?;
-    let instance = Instance::read(&std::fs::read_to_string(&arguments.file)?)?;
+    let text = std::fs::read_to_string(&arguments.file)?;
+    let instance =
+        if Instance::is_one(&text) { Instance::read(&text)? } else { Instance::planar(points(&text)?) };
     let report = run(&instance, &arguments)?;
     let length = report.tour.cost();
     let gap_to = |bound: f64| if length <= bound { 0.0 } else { length / bound - 1.0 };
@@ -61,6 +61,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// The points of lines `x,y`.
+fn points(text: &str) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+    let is_data = |line: &&str| !line.trim().is_empty() && line.trim() != "x,y";
+    let point = |line: &str| -> Result<[f64; 2], Box<dyn Error>> {
+        let (x, y) = line.split_once(',').ok_or_else(|| format!("no comma in line {line:?}"))?;
+        Ok([x.trim().parse()?, y.trim().parse()?])
+    };
+    text.lines().filter(is_data).map(point).collect()
+}
+
 fn run(instance: &Instance, arguments: &Arguments) -> Result<Report, Box<dyn Error>> {
     let exact = instance.metric(false);
     let metric = instance.metric(arguments.rounding);
@@ -78,8 +88,7 @@ fn run(instance: &Instance, arguments: &Arguments) -> Result<Report, Box<dyn Err
 
     let start = Instant::now();
     let bound = arguments.ascent.map(|iterations| held_karp(&metric, iterations)).transpose()?;
-    // Rounded distances add up to a whole number.
-    let whole = |bound: f64| if arguments.rounding { (bound - 1e-6).ceil() } else { bound };
+    let whole = |bound: f64| if metric.are_whole() { (bound - 1e-6).ceil() } else { bound };
     let lower_bound = bound.map(|bound| whole(bound.value()));
     let seconds = [first_seconds, second_seconds, start.elapsed().as_secs_f64()];
     Ok(Report { christofides, tour, lower_bound, seconds })
