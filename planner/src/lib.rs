@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | check | all that is wrong with the mission, at once; targets out of reach | `check.rs`, `reach.rs` |
 //! | circles | close targets merged; the fastest loiter within the limits | `circles.rs` |
-//! | routes | k-means and Christofides, or optimised routes | `allocation.rs` |
+//! | routes | k-means and Christofides, or optimised routes by calibrated leg times | `allocation.rs`, `leg_model.rs` |
 //! | sorties | too long for the batteries? shorter flights, a battery swapped in between | `sorties.rs` |
 //! | entries | sampled angles in both directions, bounded from below | `entry.rs`, `bound/` |
 //! | legs | the paper's Algorithm 1: the fastest transition over all entries | `legs.rs`, `race.rs`, `transition/` |

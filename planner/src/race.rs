@@ -212,13 +212,9 @@ impl<'a> Race<'a> {
         };
     }
 
-    /// What a solve at some detail starts from: a better neighbour's trajectory, a candidate's own, or else that of the nearest
-    /// neighbour; `None` for a guess.
+    /// What a solve at some detail starts from; `None` for a guess. A first sketch has a guess of its own: a neighbour's trajectory takes no
+    /// less time and leads into the neighbour's local minimum.
     pub(crate) fn trajectory(&self, index: usize, detail: Detail, to_beat: f64) -> Option<&Transition> {
-        let better = match detail {
-            Detail::Sketch => self.better_neighbour(index, to_beat),
-            Detail::Full => None,
-        };
         let own = || match &self.standings[index] {
             Standing::Slower(_, draft) | Standing::Solved(_, draft) => Some(draft),
             _ => None,
@@ -226,7 +222,10 @@ impl<'a> Race<'a> {
         let entry = self.entrances[index].entry;
         let apart = |other: &Entrance| apart(other.entry.angle, entry.angle);
         let nearest = || self.neighbours(entry).min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
-        let draft = better.or_else(own).or_else(|| nearest().map(|(_, draft)| draft));
+        let draft = match detail {
+            Detail::Sketch => self.better_neighbour(index, to_beat).or_else(own),
+            Detail::Full => own().or_else(|| nearest().map(|(_, draft)| draft)),
+        };
         draft.map(|draft| &draft.transition)
     }
 
