@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 /// A solve whose steps are shorter than this, this many times in a row, far from feasible, is stuck.
 const SHORT_STEP: f64 = 0.03;
 const SHORT_STEPS: usize = 4;
-const FAR_FROM_FEASIBLE: f64 = 1e-2;
+pub(super) const FAR_FROM_FEASIBLE: f64 = 1e-2;
 /// Acceptable iterates in a row with which a solve ends, as in IPOPT.
 const ENOUGH_ACCEPTABLE: usize = 15;
 

@@ -12,6 +12,11 @@ const ETA: f64 = 1e-8;
 /// Safety factor of the least step (gamma_alpha).
 const GAMMA_ALPHA: f64 = 0.05;
 
+/// Line searches in a row that the filter cuts short before it is forgotten, and how often a solve may do so (IPOPT's
+/// `filter_reset_trigger` and `max_filter_resets`).
+const RESET_TRIGGER: usize = 5;
+const MAX_RESETS: usize = 5;
+
 /// Iterations for which memory is set aside; a limit beyond means that there is none.
 pub(super) const MOST_RESERVED: usize = 10_000;
 
@@ -21,6 +26,9 @@ pub(crate) struct Filter {
     entries: Vec<(f64, f64)>,
     pub theta_max: f64,
     pub theta_min: f64,
+    /// Line searches in a row of which the filter refused a point last.
+    refusals: usize,
+    resets: usize,
 }
 
 /// Violation `theta`, barrier cost `phi` and directional derivative of the cost at the start of a line search.
@@ -38,13 +46,23 @@ pub(crate) enum Acceptance {
     Cost,
     /// Less violation or less cost; the origin enters the filter.
     Filter,
+    /// Neither is reduced enough.
     Rejected,
+    /// The filter has seen better.
+    Forbidden,
+}
+
+impl Acceptance {
+    pub fn is_accepted(self) -> bool {
+        matches!(self, Self::Cost | Self::Filter)
+    }
 }
 
 impl Filter {
     /// Empties the filter; `theta` is the violation at the first iterate of the solve.
     pub fn start(&mut self, theta: f64) {
         self.entries.clear();
+        (self.refusals, self.resets) = (0, 0);
         self.theta_max = 1e4 * theta.max(1.0);
         self.theta_min = 1e-4 * theta.max(1.0);
     }
@@ -57,6 +75,19 @@ impl Filter {
 
     pub fn clear(&mut self) {
         self.entries.clear();
+    }
+
+    /// Counts a line search that the filter cut short, or that it did not; true if it has done so too often in a row.
+    pub fn is_obstinate(&mut self, cut_short: bool) -> bool {
+        self.refusals = if cut_short { self.refusals + 1 } else { 0 };
+        self.refusals >= RESET_TRIGGER && self.resets < MAX_RESETS
+    }
+
+    /// Forgets what it has seen of this barrier problem.
+    pub fn reset(&mut self) {
+        self.entries.clear();
+        self.refusals = 0;
+        self.resets += 1;
     }
 
     pub fn add(&mut self, origin: &Origin) {
@@ -88,7 +119,7 @@ impl Filter {
     /// Judges a trial point at step `alpha`.
     pub fn judge(&self, origin: &Origin, alpha: f64, theta: f64, phi: f64) -> Acceptance {
         if !self.admits(theta, phi) {
-            return Acceptance::Rejected;
+            return Acceptance::Forbidden;
         }
         let slope = origin.slope;
         let switching = slope < 0.0 && alpha * (-slope).powf(S_PHI) > origin.theta.powf(S_THETA);
@@ -103,5 +134,24 @@ impl Filter {
         let less_violation = theta <= (1.0 - GAMMA_THETA) * origin.theta;
         let less_cost = phi - slack <= origin.phi - GAMMA_PHI * origin.theta;
         if less_violation || less_cost { Acceptance::Filter } else { Acceptance::Rejected }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_obstinate_after_refusals_in_a_row_and_only_so_often() {
+        let mut filter = Filter::default();
+        filter.start(1.0);
+        for _ in 0..MAX_RESETS {
+            assert!((1..RESET_TRIGGER).all(|_| !filter.is_obstinate(true)));
+            assert!(!filter.is_obstinate(false), "the row is broken");
+            assert!((1..RESET_TRIGGER).all(|_| !filter.is_obstinate(true)));
+            assert!(filter.is_obstinate(true));
+            filter.reset();
+        }
+        assert!((0..2 * RESET_TRIGGER).all(|_| !filter.is_obstinate(true)));
     }
 }

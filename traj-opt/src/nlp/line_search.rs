@@ -1,5 +1,6 @@
 //! Backtracking along the Newton direction with the filter and second-order corrections.
 
+use super::course::FAR_FROM_FEASIBLE;
 use super::filter::{Acceptance, Origin};
 use super::interior_point::Memory;
 use super::kkt::System;
@@ -20,11 +21,13 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         let least = self.filter.least_step(&origin).max(1e-14);
         let mut alpha = greatest;
         let mut first = true;
+        let mut refused = false;
         while alpha >= least {
             let (theta, acceptance) = self.try_step(program, &origin, alpha, false);
-            if acceptance != Acceptance::Rejected {
+            if acceptance.is_accepted() {
                 self.accept(&origin, acceptance, alpha, dual, false);
                 self.adapt_damping(alpha / greatest);
+                self.heed_filter(refused);
                 return Some(alpha);
             }
             if first
@@ -32,12 +35,22 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
                 && theta.is_finite()
                 && let Some(corrected) = self.correct(program, &origin, greatest, theta)
             {
+                self.heed_filter(false);
                 return Some(corrected);
             }
             first = false;
+            refused = acceptance == Acceptance::Forbidden;
             alpha *= 0.5;
         }
         None
+    }
+
+    /// Forgets the filter if it alone cuts step after step short near the feasible set, where it bars the way by a point that happened to
+    /// be cheap; far from it that is a case for the restoration.
+    fn heed_filter(&mut self, cut_short: bool) {
+        if self.filter.is_obstinate(cut_short) && self.primal_residual(&self.values) < FAR_FROM_FEASIBLE {
+            self.filter.reset();
+        }
     }
 
     /// Evaluates a trial point along the direction or its correction.
@@ -85,7 +98,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             let tau = self.tau();
             scale = self.primal_step(true);
             let (next, acceptance) = self.try_step(program, origin, scale, true);
-            if acceptance != Acceptance::Rejected {
+            if acceptance.is_accepted() {
                 self.bounds.directions(&self.w, &self.correction.w, self.mu);
                 let dual = self.bounds.dual_step(tau);
                 self.accept(origin, acceptance, scale, dual, true);
