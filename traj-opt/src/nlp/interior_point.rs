@@ -27,7 +27,7 @@ const S_MAX: f64 = 100.0;
 const RHO: f64 = 1e3;
 /// Range of the damping relative to the squared scales of the variables.
 pub(super) const LEAST_DAMPING: f64 = 1e-10;
-const GREATEST_DAMPING: f64 = 1e-3;
+const GREATEST_DAMPING: f64 = 0.1;
 /// Damping that a shortened step starts with, and up to which a failed line search is repeated with more.
 const DAMPING_STEP: f64 = 1e-8;
 const RETRY_DAMPING: f64 = 1e-4;
@@ -38,9 +38,12 @@ const LENGTHEN: f64 = 3.0;
 const INFEASIBLE_GUESS: f64 = 0.1;
 /// Regularisation above which it is tried before none.
 const SKIP_TRIAL: f64 = 1e-4;
+/// The first one of a solve, if convexity needs any.
+const FIRST_DELTA: f64 = 1e-4;
 /// By how much it grows until the first one of a solve suffices; IPOPT's 100 takes 5 to 15 % more time on the slowest transitions.
 const FIRST_GROWTH: f64 = 300.0;
-/// By how much the regularisation falls from one iteration to the next; faster than IPOPT's 3, which costs iterations here.
+/// By how much the regularisation falls from one iteration to the next, and grows while it does not suffice; faster than IPOPT's 3, which
+/// costs iterations here.
 const RELIEF: f64 = 8.0;
 const MAX_RESTORATIONS: usize = 4;
 /// Reductions of the violation that a restoration aims at when the method jams and when the line search fails.
@@ -76,7 +79,8 @@ pub(crate) struct Memory<const NX: usize, const NU: usize> {
     pub log: Vec<Iteration>,
     pub states: StateScale<NX>,
     pub time_weight: f64,
-    /// Levenberg-Marquardt damping of flat directions: grows when the line search shortens steps, falls when it does not.
+    /// Least regularisation, Levenberg-Marquardt damping of flat directions: grows when the line search shortens steps, falls when it
+    /// does not.
     pub damping: f64,
     /// Last regularisation that was needed.
     pub delta: f64,
@@ -298,10 +302,12 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         if change.abs() * alpha > limit { limit / change.abs() } else { alpha }
     }
 
-    /// Damps more after a step that the line search cut to `fraction`, less after one that it did not.
+    /// Damps more after a step that the line search cut to `fraction`, less after one that it did not. More is more than the step had:
+    /// the regularisation that barely makes a Hessian convex leaves directions in which the next step is as much too long.
     pub fn adapt_damping(&mut self, fraction: f64) {
         if fraction < 0.1 {
-            self.damping = (self.damping * 10.0).clamp(DAMPING_STEP, GREATEST_DAMPING);
+            let regularisation = self.damping.max(self.delta);
+            self.damping = (10.0 * regularisation).clamp(DAMPING_STEP, GREATEST_DAMPING);
         } else if fraction > 0.5 {
             self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
         }
@@ -398,20 +404,18 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     fn factorise(&mut self, riccati: &mut Riccati<NX>) -> Result<(), NotConvex> {
         let least = self.damping;
         // a Hessian that was indefinite usually still is: do not factorise it in vain
-        let repeated = self.delta / RELIEF;
-        if repeated > SKIP_TRIAL && riccati.factorise(&self.lq, &self.regularisation(repeated)).is_ok() {
-            self.delta = repeated;
+        let relieved = self.delta / RELIEF;
+        let skips = relieved > SKIP_TRIAL;
+        let first = if skips { relieved.max(least) } else { least };
+        if riccati.factorise(&self.lq, &self.regularisation(first)).is_ok() {
+            self.delta = if skips { first } else { 0.0 };
             return Ok(());
         }
-        if repeated <= SKIP_TRIAL && riccati.factorise(&self.lq, &self.regularisation(least)).is_ok() {
-            self.delta = 0.0;
-            return Ok(());
-        }
-        let mut delta = if self.last_delta() > 0.0 { (self.last_delta() / RELIEF).max(1e-20) } else { 1e-4 };
-        if repeated > SKIP_TRIAL {
-            delta = 8.0 * repeated;
-        }
-        let growth = if self.last_delta() > 0.0 { 8.0 } else { FIRST_GROWTH };
+        let last = self.last_delta();
+        let growth = if last > 0.0 { RELIEF } else { FIRST_GROWTH };
+        let next = if last > 0.0 { last / RELIEF } else { FIRST_DELTA };
+        // the first has failed
+        let mut delta = if skips { 0.0 } else { next }.max(RELIEF * first);
         while delta < 1e40 {
             if riccati.factorise(&self.lq, &self.regularisation(delta)).is_ok() {
                 self.delta = delta;

@@ -102,6 +102,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
                 self.bounds.directions(&self.w, &self.correction.w, self.mu);
                 let dual = self.bounds.dual_step(tau);
                 self.accept(origin, acceptance, scale, dual, true);
+                self.adapt_damping(scale / alpha);
                 return Some(scale);
             }
             theta = next;

@@ -4,7 +4,7 @@
 mod catalogue;
 
 use catalogue::definition::{Known, Mode};
-use traj_opt::Transcription;
+use traj_opt::{Status, Transcription};
 
 const TRANSCRIPTIONS: [Transcription; 5] = [
     Transcription::HermiteSimpson,
@@ -87,6 +87,16 @@ reproduced!(
 fn the_slow_ones_too() {
     for known in catalogue::all() {
         reproduces(&known, true);
+    }
+}
+
+/// Outside its tube the rider moves along spheres on which the running cost is constant: the reduced Hessian is as good as singular and
+/// often indefinite, and steps are short unless the regularisation answers them.
+#[test]
+fn the_rider_is_solved_on_every_mesh() {
+    for n in [100, 150, 200] {
+        let row = catalogue::alp_rider::known().run(Transcription::HermiteSimpson, &Mode::Fixed(n));
+        assert_eq!(row.status, Status::Solved, "{n} segments, {} iterations", row.iterations);
     }
 }
 
