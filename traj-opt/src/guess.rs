@@ -1,5 +1,6 @@
 //! Where the solver starts.
 
+use crate::interpolate::bracket;
 use crate::mesh::MOST;
 use crate::{Error, Solution};
 use nalgebra::SVector;
@@ -101,11 +102,7 @@ impl<const NX: usize, const NU: usize> Guess<NX, NU> {
     /// State and control at a fraction of the flight.
     #[must_use]
     pub fn sample(&self, fraction: f64) -> (SVector<f64, NX>, SVector<f64, NU>) {
-        let n = self.fractions.len();
-        let right = self.fractions.partition_point(|&f| f <= fraction).clamp(1, n.max(2) - 1).min(n - 1);
-        let left = right.saturating_sub(1);
-        let width = self.fractions[right] - self.fractions[left];
-        let w = if width > 0.0 { ((fraction - self.fractions[left]) / width).clamp(0.0, 1.0) } else { 0.0 };
+        let (left, right, w) = bracket(&self.fractions, fraction);
         (
             self.states[left] * (1.0 - w) + self.states[right] * w,
             self.controls[left] * (1.0 - w) + self.controls[right] * w,

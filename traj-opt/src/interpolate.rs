@@ -39,6 +39,15 @@ impl<const NX: usize> Nodes<NX> {
     }
 }
 
+/// The two of the increasing `points` next to `s` and the weight of the second; beyond the ends, the last of them alone counts.
+pub(crate) fn bracket(points: &[f64], s: f64) -> (usize, usize, f64) {
+    let n = points.len();
+    let right = points.partition_point(|&p| p <= s).clamp(1, n.max(2) - 1).min(n - 1);
+    let left = right.saturating_sub(1);
+    let width = points[right] - points[left];
+    (left, right, if width > 0.0 { ((s - points[left]) / width).clamp(0.0, 1.0) } else { 0.0 })
+}
+
 /// Lagrange interpolation of `values` at `points`, evaluated at `s`.
 pub(crate) fn polynomial<const N: usize>(
     points: &[f64],

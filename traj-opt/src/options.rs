@@ -30,8 +30,8 @@ pub struct Options {
     pub max_iterations: usize,
     /// First barrier parameter. Default 0.1 (that of IPOPT).
     pub initial_mu: f64,
-    /// First barrier parameter of a solve that starts from a neighbour's solution ([`solve_from`](crate::solve_from)), relative
-    /// to the scale of the cost; also its last one if it is at most a third of the tolerance. Default 3e-6.
+    /// First barrier parameter of a solve that starts from a neighbour's solution ([`solve_from`](crate::solve_from)) or from one on
+    /// a coarser mesh ([`solve_refined`](crate::solve_refined)), relative to the scale of the cost; for a neighbour also its last one if it is at most a third of the tolerance. Default 3e-6.
     pub warm_mu: f64,
     /// How often a solve with free final time that gets stuck far from feasibility is begun again, each time from a guess twice
     /// as long: a guess that is too short for the vehicle can lead into a local minimum of the violation. If that does not help, guesses

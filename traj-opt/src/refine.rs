@@ -5,6 +5,7 @@
 //! false optima of a coarse mesh. Segments above the tolerance are divided (bisection as in J. T. Betts, *Practical Methods for
 //! Optimal Control*, section 4.7, with the integration in place of his quadrature of the residual).
 
+use crate::solve::{SAMPLES, solve_on_finer};
 use crate::violation::segment_violations;
 use crate::{
     Dynamics, Error, Guess, IntegrateOptions, Iteration, Mesh, Options, Problem, Solution, Transcription,
@@ -168,8 +169,9 @@ pub fn refined_mesh(mesh: &Mesh, errors: &[f64], tolerance: f64, order: usize) -
 }
 
 /// Solves, estimates the error of every segment independently, divides the segments that are not accurate or leave their
-/// constraints, and repeats. A mesh on which the solve fails, coarse ones have optima that fly away, is halved and begun again
-/// from the guess.
+/// constraints, and repeats from the trajectory and the multipliers that it has, with the barrier parameter
+/// [`Options::warm_mu`]. A mesh on which the solve fails, coarse ones have optima that fly away, is halved and begun again from the
+/// guess.
 ///
 /// # Errors
 /// Those of [`solve`](crate::solve) and of the integrator.
@@ -182,20 +184,14 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     refine: &RefineOptions,
 ) -> Result<Refined<NX, NU>, Error> {
     refine.validate()?;
-    let proceed = |_: &Iteration| ControlFlow::Continue(());
-    let mut workspace = Workspace::new();
-    let mut iterations = 0;
-    let mut attempt = |mesh: &Mesh, guess: &Guess<NX, NU>| {
-        let s = solve_with(&mut workspace, problem, mesh, transcription, guess, options, proceed)?;
-        iterations += s.iterations;
-        Ok::<_, Error>(s)
-    };
-    let mut solution = attempt(mesh, guess)?;
+    let workspace = Workspace::new();
+    let mut attempts = Attempts { workspace, problem, transcription, options, iterations: 0 };
+    let mut solution = attempts.begin_at(mesh, guess)?;
     for _ in 0..MAX_HALVINGS {
         if solution.status.is_success() || 2 * solution.mesh().n_segments() > refine.max_segments {
             break;
         }
-        solution = attempt(&halved(solution.mesh()), guess)?;
+        solution = attempts.begin_at(&halved(solution.mesh()), guess)?;
     }
     let (mut rounds, mut cost_change) = (0, None);
     loop {
@@ -209,14 +205,7 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         let spent = rounds >= refine.max_rounds || mesh.n_segments() > refine.max_segments;
         let done = spent || (judged.converged && settled);
         if !done && solution.status.is_success() {
-            let mut next = attempt(&mesh, &Guess::from_solution(&solution, 4))?;
-            if !next.status.is_success() {
-                // on from where it got, with a new barrier, or all over again
-                next = attempt(&mesh, &Guess::from_solution(&next, 4))?;
-            }
-            if !next.status.is_success() {
-                next = attempt(&mesh, guess)?;
-            }
+            let next = attempts.refine(&mesh, &solution, guess)?;
             if next.status.is_success() {
                 let size = next.objective.abs().max(f64::MIN_POSITIVE);
                 let change = (next.objective - solution.objective).abs() / size;
@@ -227,14 +216,55 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         }
         let Judged { error, violation, .. } = judged;
         let converged = judged.converged && settled;
+        let iterations = attempts.iterations;
         return Ok(Refined { solution, error, violation, cost_change, converged, rounds, iterations });
+    }
+}
+
+/// Solves of one problem, with the iterations that they took.
+struct Attempts<'a, const NX: usize, const NU: usize, P> {
+    workspace: Workspace<NX, NU>,
+    problem: &'a P,
+    transcription: Transcription,
+    options: &'a Options,
+    iterations: usize,
+}
+
+impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Attempts<'_, NX, NU, P> {
+    fn begin_at(&mut self, mesh: &Mesh, guess: &Guess<NX, NU>) -> Result<Solution<NX, NU>, Error> {
+        let proceed = |_: &Iteration| ControlFlow::Continue(());
+        let Self { workspace, problem, transcription, options, .. } = self;
+        let solution = solve_with(workspace, *problem, mesh, *transcription, guess, options, proceed)?;
+        self.iterations += solution.iterations;
+        Ok(solution)
+    }
+
+    /// From the multipliers of a coarser mesh; if that fails from its trajectory, then on from where that got, then from the first guess.
+    fn refine(
+        &mut self,
+        mesh: &Mesh,
+        coarser: &Solution<NX, NU>,
+        guess: &Guess<NX, NU>,
+    ) -> Result<Solution<NX, NU>, Error> {
+        let mut next = solve_on_finer(&mut self.workspace, self.problem, mesh, coarser, self.options);
+        self.iterations += next.iterations;
+        if !next.status.is_success() {
+            next = self.begin_at(mesh, &Guess::from_solution(coarser, SAMPLES))?;
+        }
+        if !next.status.is_success() {
+            next = self.begin_at(mesh, &Guess::from_solution(&next, SAMPLES))?;
+        }
+        if !next.status.is_success() {
+            next = self.begin_at(mesh, guess)?;
+        }
+        Ok(next)
     }
 }
 
 /// Halvings of a mesh on which the first solve fails.
 const MAX_HALVINGS: usize = 3;
 /// Points of a segment at which its constraints are looked at.
-const SAMPLES: usize = 8;
+const LOOKS: usize = 8;
 
 /// What is still wrong with a solution.
 struct Judged {
@@ -253,7 +283,7 @@ fn judge<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let order = solution.transcription().order();
     let mut errors = segment_errors(solution, problem.dynamics())?;
     let error = errors.iter().copied().fold(0.0, f64::max);
-    let violations = segment_violations(solution, problem, SAMPLES);
+    let violations = segment_violations(solution, problem, LOOKS);
     let violation = violations.iter().copied().fold(0.0, f64::max);
     for (e, v) in errors.iter_mut().zip(&violations) {
         if *v > refine.violation_tolerance {

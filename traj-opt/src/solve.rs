@@ -62,17 +62,16 @@ pub fn solve_with<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     setup::validate(problem, &bounds)?;
     guess.validate(bounds.initial_time)?;
     let transcription = transcription.valid();
-    let scales = problem.scales().unwrap_or_else(|| setup::default_scales(&bounds, guess));
-    let free_time = bounds.final_time_lower != bounds.final_time_upper;
-    let program = Program { problem, mesh, transcription, bounds, scales, free_time };
+    let possible = bounds.final_time_lower..=bounds.final_time_upper;
+    let program = transcribe(problem, mesh, transcription, guess);
     let memory = &mut workspace.memory;
     // one type for all callers: the iterations are compiled once a problem
     let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut monitor;
-    let restarts = if free_time { options.time_restarts } else { 0 };
+    let restarts = if program.free_time { options.time_restarts } else { 0 };
     let mut spent = 0;
-    let possible = bounds.final_time_lower..=bounds.final_time_upper;
     for factor in restart_factors(restarts) {
-        let final_time = bounds.initial_time + (guess.final_time() - bounds.initial_time) * factor;
+        let initial_time = program.bounds.initial_time;
+        let final_time = initial_time + (guess.final_time() - initial_time) * factor;
         if factor != 1.0 && !possible.contains(&final_time) {
             continue;
         }
@@ -121,9 +120,7 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     setup::validate(problem, &bounds)?;
     let guess = Guess::from_solution(previous, 1);
     let (mesh, transcription) = (previous.mesh(), transcription.valid());
-    let scales = problem.scales().unwrap_or_else(|| setup::default_scales(&bounds, &guess));
-    let free_time = bounds.final_time_lower != bounds.final_time_upper;
-    let program = Program { problem, mesh, transcription, bounds, scales, free_time };
+    let program = transcribe(problem, mesh, transcription, &guess);
     let memory = &mut workspace.memory;
     let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut monitor;
     if memory.start_at(&program, &previous.point, options) {
@@ -133,6 +130,39 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
         }
     }
     solve_with(workspace, problem, mesh, transcription, &guess, options, monitor)
+}
+
+/// Solves on a finer mesh what a solution solves on its own, starting from its primal and dual variables with the barrier parameter
+/// [`Options::warm_mu`]; no second attempt is made.
+pub(crate) fn solve_on_finer<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    workspace: &mut Workspace<NX, NU>,
+    problem: &P,
+    mesh: &Mesh,
+    coarser: &Solution<NX, NU>,
+    options: &Options,
+) -> Solution<NX, NU> {
+    let guess = Guess::from_solution(coarser, SAMPLES);
+    let program = transcribe(problem, mesh, coarser.transcription, &guess);
+    let memory = &mut workspace.memory;
+    memory.start_on_finer(&program, coarser, &guess, options);
+    let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut |_| ControlFlow::Continue(());
+    let outcome = memory.run(&program, options, true, monitor);
+    extract(&program, memory, &outcome)
+}
+
+/// Samples a segment from which a solution is interpolated onto another mesh.
+pub(crate) const SAMPLES: usize = 4;
+
+fn transcribe<'a, const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    problem: &'a P,
+    mesh: &'a Mesh,
+    transcription: Transcription,
+    guess: &Guess<NX, NU>,
+) -> Program<'a, NX, NU, P> {
+    let bounds = problem.bounds();
+    let scales = problem.scales().unwrap_or_else(|| setup::default_scales(&bounds, guess));
+    let free_time = bounds.final_time_lower != bounds.final_time_upper;
+    Program { problem, mesh, transcription, bounds, scales, free_time }
 }
 
 /// Builds the solution from the last iterate.

@@ -10,7 +10,6 @@ use super::layout::Layout;
 use super::program::{Duals, Linearisation, Program, Scratch, Values};
 use super::quadratic::{Quadratic, Rhs, Step};
 use super::riccati::{NotConvex, Regularisation, Riccati};
-use crate::transcription::MAX_DEGREE;
 use crate::{Iteration, Options, Problem, Residuals, Status};
 use nalgebra::SVector;
 use std::ops::ControlFlow;
@@ -87,7 +86,9 @@ pub(crate) struct Memory<const NX: usize, const NU: usize> {
     pub objective_scale: f64,
     pub initial_time: f64,
     pub mu: f64,
-    /// True if the solve starts with a neighbour's multipliers.
+    /// The last barrier parameter, relative to the scale of the cost.
+    pub least_mu: f64,
+    /// True if the solve starts with the multipliers of a neighbour or of a coarser mesh.
     pub warm: bool,
 }
 
@@ -225,7 +226,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
                     continue;
                 }
             }
-            self.update_barrier(options, residuals);
+            self.update_barrier(residuals);
             if self.newton_direction().is_err() {
                 return finish(course.fallback(Status::Stalled));
             }
@@ -273,8 +274,8 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     }
 
     /// Monotone decrease of mu (Fiacco and McCormick) once the barrier problem is solved well enough.
-    fn update_barrier(&mut self, options: &Options, mut residuals: Residuals) {
-        let least = self.least_mu(options) * self.objective_scale;
+    fn update_barrier(&mut self, mut residuals: Residuals) {
+        let least = self.least_mu * self.objective_scale;
         let scale = self.multiplier_scale() * self.objective_scale;
         while self.mu > least {
             residuals.complementarity = self.bounds.complementarity(&self.w, self.mu) / scale;
@@ -284,13 +285,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             self.mu = (KAPPA_MU * self.mu).min(self.mu.powf(THETA_MU)).max(least);
             self.filter.clear();
         }
-    }
-
-    /// The last barrier parameter, relative to the scale of the cost. A warm start whose own is within the tolerance stays there: another
-    /// barrier problem would cost it as many iterations as the first.
-    fn least_mu(&self, options: &Options) -> f64 {
-        let least = options.tolerance / 10.0;
-        if self.warm { least.max(options.warm_mu.min(options.tolerance / 3.0)) } else { least }
     }
 
     /// Greatest step along a direction that respects the bounds and changes the length of the flight moderately.
@@ -347,58 +341,6 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.riccati = riccati;
         factorised?;
         self.solve_for_direction()
-    }
-
-    /// Multipliers that make the gradient of the Lagrangian least in the scaled norm; kept only if moderate.
-    pub fn least_squares_multipliers(&mut self) {
-        self.lq.copy_from(&self.lin.raw);
-        self.lq.clear_hessian();
-        for (i, slack) in self.rows.slack.iter().enumerate() {
-            if slack.is_some() {
-                self.lq.compliance[i] = self.boundary_scale[i] * self.boundary_scale[i];
-            }
-        }
-        self.rhs.c.fill(SVector::zeros());
-        self.rhs.e.fill(0.0);
-        let layout = &self.layout;
-        let net = |i: usize| self.lin.objective[i] - self.bounds.z_lower[i] + self.bounds.z_upper[i];
-        for knot in 0..=layout.n_segments {
-            self.rhs.gx[knot] = SVector::from_fn(|i, _| net(layout.state(knot) + i));
-        }
-        for i in 0..layout.n_segments * layout.m {
-            self.rhs.gu[i] = net(layout.controls + i);
-        }
-        self.rhs.gp = net(layout.time);
-        let mut riccati = std::mem::take(&mut self.riccati);
-        if riccati.factorise(&self.lq, &self.regularisation(1.0)).is_ok() {
-            riccati.solve(&self.lq, &self.states.weight, &self.rhs, &mut self.step);
-            let scale = |v: &SVector<f64, NX>| v.component_mul(&self.states.scale).amax();
-            let worst = self.step.costate.iter().map(scale).fold(0.0, f64::max);
-            if worst < 1e3 * self.objective_scale {
-                for k in 0..layout.n_segments {
-                    let costate = self.step.costate[k];
-                    if self.lin.stages.is_used() {
-                        let q = layout.n_inner;
-                        let mut forces = [SVector::zeros(); MAX_DEGREE];
-                        forces[q] = costate;
-                        self.lin.stages.multipliers(k, &mut forces[..=q]);
-                        self.duals.middle[k * q..(k + 1) * q].copy_from_slice(&forces[..q]);
-                        self.duals.defect[k] = forces[q];
-                        continue;
-                    }
-                    self.duals.defect[k] = match self.lin.resolve.get(k) {
-                        Some(resolve) => crate::dense::tr_mul_vec(resolve, &costate),
-                        None => costate,
-                    };
-                    if let Some(middle) = self.lin.middles.get(k) {
-                        self.duals.middle[k] =
-                            crate::dense::tr_mul_vec(&middle.defect_by, &self.duals.defect[k]);
-                    }
-                }
-                self.duals.boundary.copy_from_slice(&self.step.boundary);
-            }
-        }
-        self.riccati = riccati;
     }
 
     fn factorise(&mut self, riccati: &mut Riccati<NX>) -> Result<(), NotConvex> {

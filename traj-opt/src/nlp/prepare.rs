@@ -71,6 +71,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.initial_time = program.bounds.initial_time;
         self.damping = LEAST_DAMPING;
         self.warm = false;
+        self.least_mu = options.tolerance / 10.0;
     }
 
     fn set_scales<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {

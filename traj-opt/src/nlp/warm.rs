@@ -7,10 +7,10 @@ use crate::{Options, Problem};
 /// Primal and dual variables of an iterate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Point<const NX: usize> {
-    w: Vec<f64>,
-    duals: Duals<NX>,
-    z_lower: Vec<f64>,
-    z_upper: Vec<f64>,
+    pub w: Vec<f64>,
+    pub duals: Duals<NX>,
+    pub z_lower: Vec<f64>,
+    pub z_upper: Vec<f64>,
 }
 
 /// Most of its range that a variable is moved away from a bound at which the neighbour's lies.
@@ -58,15 +58,17 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.measure(program);
         self.duals.clone_from(&point.duals);
         self.mu = options.warm_mu * self.objective_scale;
-        self.approach_centre(point);
+        self.approach_centre(&point.z_lower, &point.z_upper);
         self.warm = true;
+        // another barrier problem would cost as many iterations as the first
+        self.least_mu = self.least_mu.max(options.warm_mu.min(options.tolerance / 3.0));
         program.evaluate(&self.layout, &self.rows, &mut self.w, &mut self.scratch, &mut self.values);
         true
     }
 
     /// Moves every variable and its multipliers to where their products are mu: of a pair the one that is small in its scale is
     /// replaced, since the other says more.
-    fn approach_centre(&mut self, point: &Point<NX>) {
+    pub fn approach_centre(&mut self, z_lower: &[f64], z_upper: &[f64]) {
         let mu = self.mu;
         for i in 0..self.w.len() {
             let (lower, upper) = (self.bounds.lower[i], self.bounds.upper[i]);
@@ -74,7 +76,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             let farthest =
                 if (upper - lower).is_finite() { FARTHEST * (upper - lower) } else { FARTHEST * scale };
             let weight = scale * scale / self.objective_scale;
-            let (zl, zu) = (point.z_lower[i], point.z_upper[i]);
+            let (zl, zu) = (z_lower[i], z_upper[i]);
             if lower.is_finite() && zl * weight > self.w[i] - lower {
                 self.w[i] = lower + (mu / zl).min(farthest);
             } else if upper.is_finite() && zu * weight > upper - self.w[i] {

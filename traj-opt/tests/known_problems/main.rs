@@ -100,6 +100,16 @@ fn the_rider_is_solved_on_every_mesh() {
     }
 }
 
+/// Solves from a trajectory alone take 111 iterations, most of them on meshes whose solution the one before nearly is.
+const FEWER_THAN_FROM_THE_TRAJECTORY: usize = 80;
+
+#[test]
+fn refinement_carries_multipliers_from_mesh_to_mesh() {
+    let known = catalogue::quad2d_x12::known();
+    let row = known.run(Transcription::HermiteSimpson, &known.mode(Transcription::HermiteSimpson));
+    assert!(row.iterations < FEWER_THAN_FROM_THE_TRAJECTORY, "{}", row.iterations);
+}
+
 #[test]
 fn the_list_is_complete() {
     assert_eq!(catalogue::all().len(), 25);
