@@ -268,7 +268,8 @@ const LOOKS: usize = 8;
 
 /// What is still wrong with a solution.
 struct Judged {
-    /// Errors of the segments, raised where constraints are left so that the segment is divided into three.
+    /// Errors of the segments, raised where constraints are left so that the segment is divided into three, its
+    /// neighbours into two.
     errors: Vec<f64>,
     error: f64,
     violation: f64,
@@ -285,9 +286,12 @@ fn judge<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let error = errors.iter().copied().fold(0.0, f64::max);
     let violations = segment_violations(solution, problem, LOOKS);
     let violation = violations.iter().copied().fold(0.0, f64::max);
-    for (e, v) in errors.iter_mut().zip(&violations) {
-        if *v > refine.violation_tolerance {
-            *e = e.max(refine.tolerance * f64::powi(3.0, order as i32 + 1));
+    let last = errors.len() - 1;
+    for k in (0..=last).filter(|&k| violations[k] > refine.violation_tolerance) {
+        // the switch that it is about moves with the mesh, and shall not get into a longer segment
+        for near in k.saturating_sub(1)..=(k + 1).min(last) {
+            let parts: f64 = if near == k { 3.0 } else { 2.0 };
+            errors[near] = errors[near].max(refine.tolerance * parts.powi(order as i32 + 1));
         }
     }
     let converged = error <= refine.tolerance && violation <= refine.violation_tolerance;
