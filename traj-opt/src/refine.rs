@@ -8,8 +8,8 @@
 use crate::solve::{SAMPLES, solve_on_finer};
 use crate::violation::segment_violations;
 use crate::{
-    Dynamics, Error, Guess, IntegrateOptions, Iteration, Mesh, Options, Problem, Solution, Transcription,
-    Workspace, solve_with,
+    Dynamics, Error, Guess, IntegrateOptions, Iteration, Mesh, Options, Problem, Solution, Status,
+    Transcription, Workspace, solve_with,
 };
 use nalgebra::SVector;
 use std::ops::ControlFlow;
@@ -186,13 +186,7 @@ pub fn solve_refined<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     refine.validate()?;
     let workspace = Workspace::new();
     let mut attempts = Attempts { workspace, problem, transcription, options, iterations: 0 };
-    let mut solution = attempts.begin_at(mesh, guess)?;
-    for _ in 0..MAX_HALVINGS {
-        if solution.status.is_success() || 2 * solution.mesh().n_segments() > refine.max_segments {
-            break;
-        }
-        solution = attempts.begin_at(&halved(solution.mesh()), guess)?;
-    }
+    let mut solution = attempts.first(mesh, guess, refine.max_segments)?;
     let (mut rounds, mut cost_change) = (0, None);
     loop {
         let judged = judge(&solution, problem, refine)?;
@@ -231,11 +225,49 @@ struct Attempts<'a, const NX: usize, const NU: usize, P> {
 }
 
 impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Attempts<'_, NX, NU, P> {
-    fn begin_at(&mut self, mesh: &Mesh, guess: &Guess<NX, NU>) -> Result<Solution<NX, NU>, Error> {
+    fn begin_at(
+        &mut self,
+        mesh: &Mesh,
+        guess: &Guess<NX, NU>,
+        options: &Options,
+    ) -> Result<Solution<NX, NU>, Error> {
         let proceed = |_: &Iteration| ControlFlow::Continue(());
-        let Self { workspace, problem, transcription, options, .. } = self;
+        let Self { workspace, problem, transcription, .. } = self;
         let solution = solve_with(workspace, *problem, mesh, *transcription, guess, options, proceed)?;
         self.iterations += solution.iterations;
+        Ok(solution)
+    }
+
+    /// On the given mesh, or a finer one where that does not succeed; with patience only if it is needed.
+    fn first(
+        &mut self,
+        mesh: &Mesh,
+        guess: &Guess<NX, NU>,
+        max_segments: usize,
+    ) -> Result<Solution<NX, NU>, Error> {
+        let patient = self.options;
+        let impatient = patient.clone().with_max_iterations(patient.max_iterations.min(IMPATIENT));
+        let mut solution = self.halve_until_solved(mesh, guess, &impatient, max_segments)?;
+        if solution.status == Status::IterationLimit && impatient != *patient {
+            solution = self.halve_until_solved(mesh, guess, patient, max_segments)?;
+        }
+        Ok(solution)
+    }
+
+    fn halve_until_solved(
+        &mut self,
+        mesh: &Mesh,
+        guess: &Guess<NX, NU>,
+        options: &Options,
+        max_segments: usize,
+    ) -> Result<Solution<NX, NU>, Error> {
+        let mut solution = self.begin_at(mesh, guess, options)?;
+        for _ in 0..MAX_HALVINGS {
+            if solution.status.is_success() || 2 * solution.mesh().n_segments() > max_segments {
+                break;
+            }
+            solution = self.begin_at(&halved(solution.mesh()), guess, options)?;
+        }
         Ok(solution)
     }
 
@@ -249,18 +281,21 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Attempts<'_, NX, NU, 
         let mut next = solve_on_finer(&mut self.workspace, self.problem, mesh, coarser, self.options);
         self.iterations += next.iterations;
         if !next.status.is_success() {
-            next = self.begin_at(mesh, &Guess::from_solution(coarser, SAMPLES))?;
+            next = self.begin_at(mesh, &Guess::from_solution(coarser, SAMPLES), self.options)?;
         }
         if !next.status.is_success() {
-            next = self.begin_at(mesh, &Guess::from_solution(&next, SAMPLES))?;
+            next = self.begin_at(mesh, &Guess::from_solution(&next, SAMPLES), self.options)?;
         }
         if !next.status.is_success() {
-            next = self.begin_at(mesh, guess)?;
+            next = self.begin_at(mesh, guess, self.options)?;
         }
         Ok(next)
     }
 }
 
+/// Iterations after which a first mesh is taken to be too coarse: it may have an optimum that flies away, which takes long to find,
+/// and a finer one few. Only if all finer ones take as long are they solved to the end.
+const IMPATIENT: usize = 150;
 /// Halvings of a mesh on which the first solve fails.
 const MAX_HALVINGS: usize = 3;
 /// Points of a segment at which its constraints are looked at.
