@@ -1,9 +1,10 @@
 //! The best mix of two catalysts along a reactor: bang, singular, bang.
 //!
-//! Source: COPS 3.0, problem 14 (-0.0480556); the discretised optimum is better than the true one.
+//! Source: COPS 3.0, problem 14 (-0.0480556). Radau collocation agrees with itself on the value here to 1e-8, from 100 to 1600
+//! segments; Hermite-Simpson's control rings on the singular arc, which makes the discretised optimum better than the true one.
 
 use super::definition::{Known, c, problem, v};
-use traj_opt::{Bounds, Guess};
+use traj_opt::{Bounds, Guess, Transcription};
 
 problem!(CatalystMixing<2, 1>, |t, x, u| {
         let flow = u[0] * (c::<T>(10.0) * x[1] - x[0]);
@@ -14,5 +15,7 @@ problem!(CatalystMixing<2, 1>, |t, x, u| {
     guess: Guess::line(v([1.0, 0.0]), v([0.9, 0.05]), v([0.5]), 1.0));
 
 pub fn known() -> Known {
-    Known::new("catmix", CatalystMixing, CatalystMixing::guess(), -0.048_055_6, 1e-3, 100)
+    // the linear control rings most
+    Known::new("catmix", CatalystMixing, CatalystMixing::guess(), -0.048_055_68, 1e-5, 100)
+        .except(Transcription::Trapezoidal, 1e-4)
 }

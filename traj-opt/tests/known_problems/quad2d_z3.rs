@@ -1,6 +1,7 @@
 //! A planar quadrotor climbs 3 m in least time: it turns over to brake with its thrust.
 //!
-//! Source: the statement of Hehn, Ritz and D'Andrea 2012; no published value, the one here is converged.
+//! Source: the statement of Hehn, Ritz and D'Andrea 2012; no published value. Hermite-Simpson and Radau collocation agree on the one
+//! here to 2e-8, each refined to 1e-7 and to 1e-8 and solved to 1e-10; 200 uniform segments give 1.0848799.
 
 use super::definition::{Known, c, problem, v};
 use super::planar_model::{planar, planar_bounds};
@@ -16,5 +17,5 @@ guess: Guess::from_fn(12.0, 20, |s| {
 }));
 
 pub fn known() -> Known {
-    Known::new("quad2d_z3", PlanarUp, PlanarUp::guess(), 1.084_879_9, 1e-4, 50)
+    Known::new("quad2d_z3", PlanarUp, PlanarUp::guess(), 1.084_891_75, 5e-6, 50)
 }
