@@ -11,7 +11,7 @@ const MARGIN: [f64; 2] = [0.03, 0.002];
 /// What an entry that is not sketched is expected to take longer than its bound, as a share of the least such excess that the
 /// sketches of its leg show, and at most so much (s): along a short leg the excess differs little; along a long one it is great where
 /// the bounds are loose, and the entries that are sketched first are just those.
-const EXPECTED_SHARE: f64 = 0.7;
+const EXPECTED_SHARE: f64 = 0.5;
 const MOST_EXPECTED: f64 = 0.5;
 
 /// A sketch that exceeds its bound by so much (s) more than a neighbour's does is caught in a local minimum that the neighbour has not
