@@ -365,6 +365,14 @@ mod tests {
     use crate::matrix::FromFn;
     use proptest::prelude::*;
 
+    #[test]
+    fn mates_are_mutual() {
+        assert!(is_perfect(4, &[1, 0, 3, 2]));
+        for mates in [&[1, 2, 3, 0][..], &[0, 1, 3, 2], &[1, 0, 3, 9], &[1, 0]] {
+            assert!(!is_perfect(4, mates), "{mates:?}");
+        }
+    }
+
     /// An optimum on whole distances, where its duals are exact, with `shift` added to the dual of every vertex.
     fn shifted(places: &[i32], shift: f64) -> (Matching, Certificate) {
         let distance = |i: usize, j: usize| f64::from((places[i] - places[j]).abs());

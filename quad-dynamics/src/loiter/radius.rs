@@ -34,19 +34,28 @@ impl Loiter {
         let period_at = |radius: f64| Self::new(vehicle, &at(spec, radius)).map(|loiter| loiter.period());
         // From above: small circles may take longer again, where the yaw rate binds.
         let longest = period_at(GREATEST_RADIUS)?;
-        let (mut shortest, mut high, mut low) = (longest, GREATEST_RADIUS, None);
+        let (mut shortest, mut before, mut was_falling) = (longest, longest, false);
+        let [mut last, mut second_last] = [GREATEST_RADIUS; 2];
+        // A radius that is quick enough, and a greater one that is not.
+        let mut bracket = None;
         for i in (0..N_SCAN).rev() {
             let radius = LEAST_RADIUS * (GREATEST_RADIUS / LEAST_RADIUS).powf(i as f64 / N_SCAN as f64);
-            let found = period_at(radius)?;
+            let here = period_at(radius)?;
+            // Where periods begin to rise again, the shortest one lies between two radii of the scan.
+            let ((found, place), above) = match here > before && was_falling && here > period {
+                true => (least(period_at, radius, second_last)?, second_last),
+                false => ((here, radius), last),
+            };
             shortest = shortest.min(found);
             if found <= period {
-                low = Some(radius);
+                bracket = Some((place, above));
                 break;
             }
-            high = radius;
+            (was_falling, before) = (here < before, here);
+            [second_last, last] = [last, radius];
         }
         let range = Requirement::From { low: shortest, high: longest };
-        let Some(mut low) = low.filter(|_| period < longest) else {
+        let Some((mut low, mut high)) = bracket.filter(|_| period < longest) else {
             return Err(Error::OutOfRange { field: Field::Period, value: period, requirement: range });
         };
         for _ in 0..N_BISECTIONS {
@@ -63,7 +72,7 @@ impl Loiter {
 
     /// The loiter with the shortest period among radii from `low` to `high` (m).
     ///
-    /// Small circles are short but slow. A scan of 200 radii in equal ratios, refined by golden section around the best.
+    /// Small circles are short but slow. A scan of 200 radii in equal ratios, refined by thirds around the best.
     ///
     /// # Errors
     /// As [`Loiter::new`]; [`Error::OutOfRange`] unless `0 < low <= high`.
@@ -82,28 +91,34 @@ impl Loiter {
             }
         }
         let step = 1.0 / N_RADII as f64;
-        let (mut left, mut right) = ((best.1 - step).max(0.0), (best.1 + step).min(1.0));
-        for _ in 0..60 {
-            let third = (right - left) / 3.0;
-            if period(left + third)? <= period(right - third)? {
-                right -= third;
-            } else {
-                left += third;
-            }
-        }
-        let refined = 0.5 * (left + right);
-        let share = if period(refined)? < best.0 { refined } else { best.1 };
+        let (shortest, refined) = least(period, (best.1 - step).max(0.0), (best.1 + step).min(1.0))?;
+        let share = if shortest < best.0 { refined } else { best.1 };
         Self::new(vehicle, &at(spec, radius(share)))
     }
 }
 
 const N_SCAN: usize = 400;
 const N_BISECTIONS: usize = 80;
+const N_THIRDS: usize = 60;
 const LEAST_RADIUS: f64 = 1e-3;
 const GREATEST_RADIUS: f64 = 1e6;
 
 fn at(spec: &LoiterSpec, radius: f64) -> LoiterSpec {
     LoiterSpec { radius, ..*spec }
+}
+
+/// The least value of a function that falls and then rises between two places, and where it has it.
+fn least(of: impl Fn(f64) -> Result<f64, Error>, mut left: f64, mut right: f64) -> Result<(f64, f64), Error> {
+    for _ in 0..N_THIRDS {
+        let third = (right - left) / 3.0;
+        if of(left + third)? <= of(right - third)? {
+            right -= third;
+        } else {
+            left += third;
+        }
+    }
+    let place = 0.5 * (left + right);
+    Ok((of(place)?, place))
 }
 
 /// The least radius for which `reached` holds, if it holds from there on.
