@@ -107,7 +107,7 @@ impl Airspace<'_> {
         let Some(&pad) = pads.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
             return Vec::new();
         };
-        let entries = self.shortest_path(pad, route, &calibrated(self, std::iter::empty()));
+        let (entries, _) = self.shortest_path(pad, route, &calibrated(self, std::iter::empty()));
         let mut here = self.take_off(pad, route);
         let mut solved = Vec::new();
         let mut sketch = |from: &Motion, to: Motion, goal: Goal, nodes: [usize; 2]| {

@@ -77,8 +77,16 @@ fn routed<'a>(
     airspace: &Airspace<'a>,
     options: &Options<'a>,
 ) -> Result<(Routing<'a>, Vec<Vec<usize>>), Error> {
+    let Airspace { mission, .. } = *airspace;
     let routing = Routing::new(airspace, options);
-    let routes = routing.routes()?;
+    let mut routes = routing.routes()?;
+    // Routes cost as much either way in still air, but where legs enter circles they do not take as long.
+    if mission.pipeline == Pipeline::Optimised && !mission.environment.is_windy() {
+        let [x, y] = mission.depot;
+        let depot = [x, y, mission.loiter.height];
+        let model = calibrated(airspace, std::iter::empty());
+        routes = side_by_side(&routes, |route| airspace.directed(depot, route.clone(), &model));
+    }
     Ok((routing, routes))
 }
 

@@ -43,7 +43,7 @@ impl Airspace<'_> {
     /// The legs of a route with the entries that are best for it as a whole, if the model proposes any that turn out faster.
     pub(crate) fn reconsider(&self, flown: &Flown, model: &TimeModel) -> Result<Vec<Leg>, Error> {
         let &Flown { vehicle, pad, route, ref legs } = flown;
-        let entries = self.shortest_path(pad, route, model);
+        let (entries, _) = self.shortest_path(pad, route, model);
         let same = |leg: &Leg, entry: &Entry| leg.loiter.is_some_and(|loiter| loiter.entry == *entry);
         if legs.iter().zip(&entries).all(|(leg, entry)| same(leg, entry)) {
             return Ok(legs.clone());
@@ -55,11 +55,27 @@ impl Airspace<'_> {
         }
     }
 
-    /// The entries of a route with the least sum of modelled leg times; the loiters take as long from any entry.
-    pub(crate) fn shortest_path(&self, pad: [f64; 3], route: &[usize], model: &TimeModel) -> Vec<Entry> {
+    /// A route in the direction in which its modelled legs take less time.
+    pub(crate) fn directed(&self, pad: [f64; 3], mut route: Vec<usize>, model: &TimeModel) -> Vec<usize> {
+        let (_, forwards) = self.shortest_path(pad, &route, model);
+        route.reverse();
+        let (_, backwards) = self.shortest_path(pad, &route, model);
+        if forwards <= backwards {
+            route.reverse();
+        }
+        route
+    }
+
+    /// The entries of a route with the least sum of modelled leg times, and that (s); the loiters take as long from any entry.
+    pub(crate) fn shortest_path(
+        &self,
+        pad: [f64; 3],
+        route: &[usize],
+        model: &TimeModel,
+    ) -> (Vec<Entry>, f64) {
         let entries = entry::sampled(self.mission.transition.entries);
         let orbits: Vec<&Orbit> = route.iter().map(|&circle| &self.orbits[circle]).collect();
-        let Some(first) = orbits.first() else { return Vec::new() };
+        let Some(first) = orbits.first() else { return (Vec::new(), 0.0) };
         let start = self.take_off(pad, route);
         let mut times: Vec<f64> = entries.iter().map(|&entry| model.time(&start, &first.at(entry))).collect();
         let mut origins: Vec<Vec<usize>> = Vec::new();
@@ -81,14 +97,14 @@ impl Airspace<'_> {
             .zip(&times)
             .map(|(&entry, time)| time + model.time(&orbits[orbits.len() - 1].exit(entry), &home))
             .collect();
-        let (mut at, _) = least(&totals);
+        let (mut at, total) = least(&totals);
         let mut path = vec![entries[at]];
         for origin in origins.iter().rev() {
             at = origin[at];
             path.push(entries[at]);
         }
         path.reverse();
-        path
+        (path, total)
     }
 
     /// The direction from a pad to the first circle of a route (rad, from east, counter-clockwise).
