@@ -373,6 +373,18 @@ mod tests {
         }
     }
 
+    /// Two triangles far apart: an edge in each, and one between them that leaves either blossom. Three between them prove nothing.
+    #[test]
+    fn a_blossom_is_left_once() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [50.0, 0.0], [51.0, 0.0], [50.0, 1.0]];
+        let metric = crate::Points(&points);
+        let mut matching = min_weight_perfect_matching(&metric).unwrap();
+        assert!(!matching.blossoms().is_empty() && certificate(&metric, &matching).is_consistent);
+        matching.mates = vec![3, 4, 5, 0, 1, 2];
+        let proof = certificate(&metric, &matching);
+        assert!(!proof.is_consistent && !proof.is_optimal_within(1e300));
+    }
+
     /// An optimum on whole distances, where its duals are exact, with `shift` added to the dual of every vertex.
     fn shifted(places: &[i32], shift: f64) -> (Matching, Certificate) {
         let distance = |i: usize, j: usize| f64::from((places[i] - places[j]).abs());
