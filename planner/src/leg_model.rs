@@ -8,7 +8,6 @@
 //! by itself, by 0.09 s and at most 0.50 s where entries are chosen for whole routes.
 
 use crate::legs::{Airspace, side_by_side};
-use crate::planning::calibrated;
 use crate::transition::{Detail, Goal, Hint};
 use quad_dynamics::Motion;
 
@@ -107,7 +106,7 @@ impl Airspace<'_> {
         let Some(&pad) = pads.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
             return Vec::new();
         };
-        let (entries, _) = self.shortest_path(pad, route, &calibrated(self, std::iter::empty()));
+        let (entries, _) = self.shortest_path(pad, route, &self.time_model());
         let mut here = self.take_off(pad, route);
         let mut solved = Vec::new();
         let mut sketch = |from: &Motion, to: Motion, goal: Goal, nodes: [usize; 2]| {

@@ -84,7 +84,7 @@ fn routed<'a>(
     if mission.pipeline == Pipeline::Optimised && !mission.environment.is_windy() {
         let [x, y] = mission.depot;
         let depot = [x, y, mission.loiter.height];
-        let model = calibrated(airspace, std::iter::empty());
+        let model = airspace.time_model();
         routes = side_by_side(&routes, |route| airspace.directed(depot, route.clone(), &model));
     }
     Ok((routing, routes))
@@ -187,9 +187,7 @@ pub(crate) fn calibrated<'a>(
     flights: impl Iterator<Item = ([f64; 3], &'a [usize], &'a [Leg])>,
 ) -> TimeModel {
     let solved: Vec<_> = flights.flat_map(|(pad, route, legs)| airspace.solved(pad, route, legs)).collect();
-    let [acceleration, speed] = airspace.envelope.level_flight();
-    let wind = airspace.mission.environment.air().xy();
-    TimeModel::new(acceleration, speed).in_wind(wind).calibrated(&solved)
+    airspace.time_model().calibrated(&solved)
 }
 
 /// Does two things; with the feature `rayon` side by side.

@@ -55,6 +55,12 @@ impl Airspace<'_> {
         }
     }
 
+    /// The time model before any transition is solved.
+    pub(crate) fn time_model(&self) -> TimeModel {
+        let [acceleration, speed] = self.envelope.level_flight();
+        TimeModel::new(acceleration, speed).in_wind(self.mission.environment.air().xy())
+    }
+
     /// A route in the direction in which its modelled legs take less time.
     pub(crate) fn directed(&self, pad: [f64; 3], mut route: Vec<usize>, model: &TimeModel) -> Vec<usize> {
         let (_, forwards) = self.shortest_path(pad, &route, model);

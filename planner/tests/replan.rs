@@ -326,7 +326,7 @@ fn merged_targets_stay_together_until_one_moves() {
     assert!(circles[together].radius < fresh.plan().circles[together].radius);
     assert!((3..5).all(|target| times_circled(&replanner, target) == 1));
     stands(&replanner);
-    // It comes back, to the circle that is still open.
+    // Whoever is left takes over what has moved, too.
     replanner.apply(1.5, &Event::VehicleFails(0)).unwrap();
     stands(&replanner);
     assert!((0..5).all(|target| times_circled(&replanner, target) == 1));
@@ -341,7 +341,7 @@ fn merged_targets_stay_together_until_one_moves() {
     stands(&replanner);
 }
 
-/// A head wind makes one side's legs longer than they were shared out for.
+/// Long legs and many circles do not get longer alike in a wind.
 #[test]
 fn a_new_wind_moves_targets_to_whoever_is_sooner_done() {
     let mut mission = mission();
@@ -355,6 +355,5 @@ fn a_new_wind_moves_targets_to_whoever_is_sooner_done() {
     replanner.apply(0.0, &Event::WindChanges([9.0, 0.0])).unwrap();
     stands(&replanner);
     let routes = |plan: &Plan| plan.vehicles.iter().map(|vehicle| vehicle.route.clone()).collect::<Vec<_>>();
-    println!("{:?} {:?}", routes(&before), routes(replanner.plan()));
     assert_ne!(routes(&before), routes(replanner.plan()));
 }

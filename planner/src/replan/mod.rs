@@ -262,7 +262,7 @@ impl Replanner {
     fn find_circle(&mut self, time: f64, target: usize, changes: &mut Changes) {
         changes.keep_outs.push(target);
         let [x, y] = self.mission.targets[target].position;
-        // The farthest of a circle's targets; the targets of circles to come are not in the plan's circles.
+        // How far a circle's farthest target is away.
         let farthest = |circle: usize| {
             let distances = self.members(circle).iter().map(|&member| {
                 let [a, b] = self.mission.targets[member].position;
