@@ -19,6 +19,23 @@ const PUSH: f64 = 1e-2;
 /// Multipliers are kept within this factor of mu / distance (kappa_sigma of IPOPT).
 const KAPPA_SIGMA: f64 = 1e10;
 
+/// How far multipliers move along their directions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DualStep {
+    length: f64,
+    /// What at least is left of every multiplier.
+    least_share: f64,
+}
+
+impl DualStep {
+    /// Every multiplier by itself as far as it may: a bound that the solution leaves holds no other back.
+    pub const SINGLE: Self = Self { length: 1.0, least_share: 0.2 };
+
+    fn moved(self, z: f64, dz: f64) -> f64 {
+        (z + self.length * dz).max(self.least_share * z)
+    }
+}
+
 impl Box {
     /// Forgets all bounds of `n` variables.
     pub fn reset(&mut self, n: usize) {
@@ -144,7 +161,7 @@ impl Box {
     }
 
     /// Greatest step in `[0, 1]` that keeps `1 - tau` of every multiplier.
-    pub fn dual_step(&self, tau: f64) -> f64 {
+    pub fn dual_step(&self, tau: f64) -> DualStep {
         let mut alpha: f64 = 1.0;
         for (z, dz) in [(&self.z_lower, &self.dz_lower), (&self.z_upper, &self.dz_upper)] {
             for &i in &self.bounded {
@@ -153,20 +170,20 @@ impl Box {
                 }
             }
         }
-        alpha
+        DualStep { length: alpha, least_share: 0.0 }
     }
 
     /// Moves the multipliers and keeps them comparable with `mu / distance` at the new `w`.
-    pub fn update_multipliers(&mut self, w: &[f64], alpha: f64, mu: f64) {
+    pub fn update_multipliers(&mut self, w: &[f64], step: DualStep, mu: f64) {
         for &i in &self.bounded {
             if self.lower[i].is_finite() {
                 let primal = mu / (w[i] - self.lower[i]);
-                let z = self.z_lower[i] + alpha * self.dz_lower[i];
+                let z = step.moved(self.z_lower[i], self.dz_lower[i]);
                 self.z_lower[i] = z.clamp(primal / KAPPA_SIGMA, primal * KAPPA_SIGMA);
             }
             if self.upper[i].is_finite() {
                 let primal = mu / (self.upper[i] - w[i]);
-                let z = self.z_upper[i] + alpha * self.dz_upper[i];
+                let z = step.moved(self.z_upper[i], self.dz_upper[i]);
                 self.z_upper[i] = z.clamp(primal / KAPPA_SIGMA, primal * KAPPA_SIGMA);
             }
         }

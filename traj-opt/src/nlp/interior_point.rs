@@ -49,6 +49,18 @@ const MAX_RESTORATIONS: usize = 4;
 const RESTORED: f64 = 0.1;
 const ADMITTED: f64 = 0.9;
 
+/// What a solve starts from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// A trajectory alone.
+    #[default]
+    Guess,
+    /// A neighbour's solution with its multipliers.
+    Neighbour,
+    /// The solution on a coarser mesh with its multipliers.
+    CoarserMesh,
+}
+
 /// All memory of a solve.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory<const NX: usize, const NU: usize> {
@@ -88,8 +100,7 @@ pub(crate) struct Memory<const NX: usize, const NU: usize> {
     pub mu: f64,
     /// The last barrier parameter, relative to the scale of the cost.
     pub least_mu: f64,
-    /// True if the solve starts with the multipliers of a neighbour or of a coarser mesh.
-    pub warm: bool,
+    pub starts_from: Start,
 }
 
 /// Magnitudes of the states and their inverse squares.
@@ -249,7 +260,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     /// Readies filter and multipliers; a guess that is far from feasible is moved towards it.
     fn begin<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) {
         self.filter.start(self.theta(&self.values));
-        if !self.warm {
+        if self.starts_from == Start::Guess {
             let far = self.primal_residual(&self.values) > INFEASIBLE_GUESS;
             let restored = far && self.restore(program, RESTORED);
             self.filter.start(self.theta(&self.values));

@@ -1,8 +1,9 @@
 //! Backtracking along the Newton direction with the filter and second-order corrections.
 
+use super::barrier::DualStep;
 use super::course::FAR_FROM_FEASIBLE;
 use super::filter::{Acceptance, Origin};
-use super::interior_point::Memory;
+use super::interior_point::{Memory, Start};
 use super::kkt::System;
 use super::program::{Duals, Program};
 use crate::Problem;
@@ -16,7 +17,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     pub fn advance<P: Problem<NX, NU>>(&mut self, program: &Program<NX, NU, P>) -> Option<f64> {
         let tau = self.tau();
         let greatest = self.primal_step(false);
-        let dual = self.bounds.dual_step(tau);
+        let dual = self.dual_step(tau);
         let origin = self.origin();
         let least = self.filter.least_step(&origin).max(1e-14);
         let mut alpha = greatest;
@@ -100,7 +101,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
             let (next, acceptance) = self.try_step(program, origin, scale, true);
             if acceptance.is_accepted() {
                 self.bounds.directions(&self.w, &self.correction.w, self.mu);
-                let dual = self.bounds.dual_step(tau);
+                let dual = self.dual_step(tau);
                 self.accept(origin, acceptance, scale, dual, true);
                 self.adapt_damping(scale / alpha);
                 return Some(scale);
@@ -158,8 +159,21 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         system.expand(&self.corrected, &self.step, &mut self.correction);
     }
 
+    /// The step of the bounds' multipliers. Near a neighbour's solution single ones tell the next iteration which bounds are left and
+    /// reached: up to a fifth fewer iterations; far from it they cost some.
+    fn dual_step(&self, tau: f64) -> DualStep {
+        if self.starts_from == Start::Neighbour { DualStep::SINGLE } else { self.bounds.dual_step(tau) }
+    }
+
     /// Takes the trial point.
-    fn accept(&mut self, origin: &Origin, acceptance: Acceptance, alpha: f64, dual: f64, corrected: bool) {
+    fn accept(
+        &mut self,
+        origin: &Origin,
+        acceptance: Acceptance,
+        alpha: f64,
+        dual: DualStep,
+        corrected: bool,
+    ) {
         if acceptance == Acceptance::Filter {
             self.filter.add(origin);
         }

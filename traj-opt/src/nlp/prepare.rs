@@ -2,7 +2,7 @@
 
 use super::barrier::DEFAULT_PUSH;
 use super::filter::MOST_RESERVED;
-use super::interior_point::{LEAST_DAMPING, Memory, StateScale};
+use super::interior_point::{LEAST_DAMPING, Memory, Start, StateScale};
 use super::program::Program;
 use super::setup;
 use crate::{Guess, Options, Problem};
@@ -70,7 +70,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.delta = 0.0;
         self.initial_time = program.bounds.initial_time;
         self.damping = LEAST_DAMPING;
-        self.warm = false;
+        self.starts_from = Start::Guess;
         self.least_mu = options.tolerance / 10.0;
     }
 

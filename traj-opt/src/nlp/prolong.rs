@@ -3,7 +3,7 @@
 //! The multiplier of a bound or path constraint at a collocation point grows with the share of the flight that the point stands for.
 //! Divided by it the multipliers converge as the mesh is refined, and are interpolated; costates are interpolated as they are.
 
-use super::interior_point::Memory;
+use super::interior_point::{Memory, Start};
 use super::layout::Layout;
 use super::program::Program;
 use super::tableau::Tableau;
@@ -129,7 +129,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         program.evaluate(&self.layout, &self.rows, &mut self.w, &mut self.scratch, &mut self.values);
         self.linearise_first_order(program);
         self.spread_costates();
-        self.warm = true;
+        self.starts_from = Start::CoarserMesh;
     }
 }
 

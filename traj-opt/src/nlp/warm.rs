@@ -1,6 +1,6 @@
 //! Starting from the primal and dual variables of a neighbouring problem's solution.
 
-use super::interior_point::Memory;
+use super::interior_point::{Memory, Start};
 use super::program::{Duals, Program};
 use crate::{Options, Problem};
 
@@ -59,7 +59,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.duals.clone_from(&point.duals);
         self.mu = options.warm_mu * self.objective_scale;
         self.approach_centre(&point.z_lower, &point.z_upper);
-        self.warm = true;
+        self.starts_from = Start::Neighbour;
         // another barrier problem would cost as many iterations as the first
         self.least_mu = self.least_mu.max(options.warm_mu.min(options.tolerance / 3.0));
         program.evaluate(&self.layout, &self.rows, &mut self.w, &mut self.scratch, &mut self.values);
