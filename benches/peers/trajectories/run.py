@@ -19,6 +19,8 @@ TABLE = HERE.parents[2] / "planner/tests/data/transitions.csv"
 RESULTS = HERE.parents[1] / "RESULTS.md"
 BEGIN, END = "<!-- traj-opt peers: begin -->\n", "<!-- traj-opt peers: end -->"
 SEGMENTS = 40
+OURS = "traj-opt, naive guess, "
+TRANSCRIPTIONS = ("Hermite-Simpson", "trapezoidal", "Runge-Kutta")
 TOLERANCE = 1e-6
 MASS, GRAVITY, DRAG = 1.5, 9.81, 0.15
 MOST = 2 * MASS * GRAVITY
@@ -209,16 +211,19 @@ def percentile(values, share):
 
 
 def report(rows, model, column, runs):
+    """A line for each run. Ratios to `traj-opt` from the same guess: by Hermite-Simpson, and by the transcription of the run itself."""
     reference = [float(r[column]) for r in rows]
-    base = statistics.median(ms for ms, _ in runs["traj-opt, naive guess"])
+    median = lambda name: statistics.median(ms for ms, _ in runs[name])
     lines = []
     for name, run in runs.items():
         ms = [m for m, _ in run]
         solved = sum(t is not None for _, t in run)
         near = sum(t is not None and t <= r * 1.001 for (_, t), r in zip(run, reference))
-        middle = statistics.median(ms)
+        ratio = median(name) / median(OURS + "Hermite-Simpson")
+        same = next((t for t in TRANSCRIPTIONS if t in name), None)
+        alike = f"{median(name) / median(OURS + same):.1f}" if same else ""
         lines.append(
-            f"| {model} | {name} | {solved} of {len(run)} | {near} | {middle:.1f} | {percentile(ms, 95):.1f} | {middle / base:.1f} |"
+            f"| {model} | {name} | {solved} of {len(run)} | {near} | {median(name):.1f} | {percentile(ms, 95):.1f} | {ratio:.1f} | {alike} |"
         )
     return lines
 
@@ -226,13 +231,16 @@ def report(rows, model, column, runs):
 def main():
     program = pathlib.Path(sys.argv[1]) / "transitions"
     rows = list(csv.DictReader(open(TABLE)))
-    lines = ["| model | solver | solved | within | ms, median | 95 % | ratio |", "|---|---|---|---|---|---|---|"]
+    lines = ["| model | solver | solved | within | ms, median | 95 % | ratio | same transcription |", "|---|---|---|---|---|---|---|---|"]
     for model, nx, column in (("thrust-rate", 10, "tfA_hs80"), ("rigid-body", 13, "tfB_hs80")):
-        runs = {"traj-opt, naive guess": ours(program, model, "--guess", "naive")}
+        runs = {
+            OURS + name: ours(program, model, "--guess", "naive", "--transcription", name.lower(), "--substeps", "1")
+            for name in TRANSCRIPTIONS
+        }
         runs["traj-opt, own guess"] = ours(program, model)
         runs["traj-opt, own guess, flyable"] = ours(program, model, "--flyable")
         runs["FATROP, Runge-Kutta"] = of_table(fatrop(nx, 0.0), nx, rows)
-        runs["FATROP, end within 1e-4"] = of_table(fatrop(nx, 1e-4), nx, rows)
+        runs["FATROP, Runge-Kutta, end within 1e-4"] = of_table(fatrop(nx, 1e-4), nx, rows)
         for transcription in ("trapezoidal", "Hermite-Simpson"):
             runs[f"IPOPT, {transcription}"] = of_table(ipopt(nx, transcription), nx, rows)
         lines += report(rows, model, column, runs)

@@ -1,7 +1,8 @@
 //! Minimum-time transitions from a table of start and end states: a row each, then a summary.
 //!
 //! `cargo run --release -p uav-planner --example transitions -- FILE.csv [--model thrust-rate|rigid-body] [--segments 40]
-//! [--transcription hermite-simpson|trapezoidal|runge-kutta] [--guess naive|own] [--starts K] [--flyable] [--warm] [--json]`
+//! [--transcription hermite-simpson|trapezoidal|runge-kutta] [--substeps 2] [--guess naive|own] [--starts K] [--flyable] [--warm]
+//! [--json]`
 //!
 //! The columns read are `id`, `start_px` to `start_wz`, `end_px` to `end_wz` (SI; quaternions w first, body to world) and, if there,
 //! `tfA_hs80` and `tfB_hs80` (reference times) and `c1x`, `c1y` (the end circle's centre). `--starts K` solves from K guesses and keeps the fastest. `--flyable` solves
@@ -322,7 +323,7 @@ fn main() -> Result<(), Failure> {
         transcription: match option("--transcription", "hermite-simpson").as_str() {
             "hermite-simpson" => Transcription::HermiteSimpson,
             "trapezoidal" => Transcription::Trapezoidal,
-            "runge-kutta" => Transcription::RungeKutta { substeps: 2 },
+            "runge-kutta" => Transcription::RungeKutta { substeps: option("--substeps", "2").parse()? },
             other => return Err(format!("no transcription {other}").into()),
         },
         naive: match option("--guess", "own").as_str() {
