@@ -18,6 +18,7 @@
 //! | choose a discretisation | [`Mesh`], [`Transcription`] |
 //! | solve it | [`solve`], [`solve_with`], [`Guess`], [`Options`] |
 //! | solve a neighbour of a solved problem | [`solve_from`] |
+//! | solve a solved problem on another mesh | [`solve_on_mesh`] |
 //! | solve many problems of one kind | [`solve_batch`] |
 //! | use the result | [`Solution`], [`Status`] |
 //! | check it independently | [`Solution::integrate`], [`integrate`], [`segment_errors`], [`check_derivatives`], [`check_path_derivatives`] |
@@ -168,7 +169,7 @@ pub use refine::{RefineOptions, Refined, refined_mesh, segment_errors, solve_ref
 #[cfg(feature = "clarabel")]
 pub use relaxation::{BoundOptions, PointMass, least_time_bound};
 pub use solution::{Multipliers, Solution};
-pub use solve::{Workspace, solve, solve_from, solve_with};
+pub use solve::{Workspace, solve, solve_from, solve_on_mesh, solve_with};
 pub use status::{Iteration, Residuals, Status};
 pub use transcription::Transcription;
 pub use violation::{ConstraintKind, Location, Violation};

@@ -5,7 +5,7 @@
 //! false optima of a coarse mesh. Segments above the tolerance are divided (bisection as in J. T. Betts, *Practical Methods for
 //! Optimal Control*, section 4.7, with the integration in place of his quadrature of the residual).
 
-use crate::solve::{SAMPLES, solve_on_finer};
+use crate::solve::{SAMPLES, solve_on_mesh};
 use crate::violation::segment_violations;
 use crate::{
     Dynamics, Error, Guess, IntegrateOptions, Iteration, Mesh, Options, Problem, Solution, Status,
@@ -278,11 +278,10 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Attempts<'_, NX, NU, 
         coarser: &Solution<NX, NU>,
         guess: &Guess<NX, NU>,
     ) -> Result<Solution<NX, NU>, Error> {
-        let mut next = solve_on_finer(&mut self.workspace, self.problem, mesh, coarser, self.options);
+        let proceed = |_: &Iteration| ControlFlow::Continue(());
+        let Self { workspace, problem, transcription, options, .. } = self;
+        let mut next = solve_on_mesh(workspace, *problem, coarser, mesh, *transcription, options, proceed)?;
         self.iterations += next.iterations;
-        if !next.status.is_success() {
-            next = self.begin_at(mesh, &Guess::from_solution(coarser, SAMPLES), self.options)?;
-        }
         if !next.status.is_success() {
             next = self.begin_at(mesh, &Guess::from_solution(&next, SAMPLES), self.options)?;
         }

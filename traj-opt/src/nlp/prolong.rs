@@ -98,14 +98,15 @@ impl<'a> Grid<'a> {
 }
 
 impl<const NX: usize, const NU: usize> Memory<NX, NU> {
-    /// Starts where a solution on a coarser mesh of the same problem ended, with the barrier parameter of a warm start.
+    /// Starts where a solution on a coarser mesh of the same problem ended, with the barrier parameter of a warm start; false, and
+    /// started from the guess alone, if its multipliers are of another shape.
     pub fn start_on_finer<P: Problem<NX, NU>>(
         &mut self,
         program: &Program<NX, NU, P>,
         coarser: &Solution<NX, NU>,
         guess: &Guess<NX, NU>,
         options: &Options,
-    ) {
+    ) -> bool {
         self.start(program, guess, guess.final_time(), options);
         let layout = std::mem::take(&mut self.layout);
         let mut old = Layout::default();
@@ -113,8 +114,17 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         old.rebuild((NX, NU), coarser.mesh(), transcription, layout.n_path, self.rows.n_slacks);
         let coarse = Grid::new(&old, coarser.mesh().fractions(), transcription);
         let fine = Grid::new(&layout, program.mesh.fractions(), transcription);
-        let Point { duals, z_lower, z_upper, .. } = &coarser.point;
-        self.mu = options.warm_mu * self.objective_scale;
+        let Point { w, duals, z_lower, z_upper } = &coarser.point;
+        let fits = w.len() == old.n_variables
+            && duals.defect.len() == old.n_segments
+            && duals.boundary.len() == self.duals.boundary.len();
+        if !fits {
+            self.layout = layout;
+            return false;
+        }
+        let left = coarser.log.last().map_or(0.0, |last| last.mu);
+        let thinned = left * old.n_segments as f64 / layout.n_segments as f64;
+        self.mu = thinned.max(options.warm_mu * self.objective_scale);
         self.approach_centre(&fine.prolong(&coarse, z_lower), &fine.prolong(&coarse, z_upper));
         let middles: Vec<f64> = (0..old.n_segments).map(|k| coarse.middle(k)).collect();
         for k in 0..layout.n_segments {
@@ -130,6 +140,7 @@ impl<const NX: usize, const NU: usize> Memory<NX, NU> {
         self.linearise_first_order(program);
         self.spread_costates();
         self.starts_from = Start::CoarserMesh;
+        true
     }
 }
 
