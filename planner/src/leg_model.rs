@@ -7,7 +7,8 @@
 //! 2.2 to 2.3 s among 100 targets in 300 m x 300 m, is off by 0.25 s (root mean square) and at most 0.58 s where every leg is the fastest
 //! by itself, by 0.09 s and at most 0.50 s where entries are chosen for whole routes.
 
-use crate::legs::{Airspace, side_by_side};
+use crate::legs::Airspace;
+use crate::threads::side_by_side;
 use crate::transition::{Detail, Goal, Hint};
 use quad_dynamics::Motion;
 

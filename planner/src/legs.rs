@@ -10,6 +10,7 @@ use crate::options::{Options, Watch};
 use crate::plan::{Candidate, Entry, Leg, Loiter, Outcome, Transition};
 use crate::planning::envelope;
 use crate::race::{Arrival, Race};
+use crate::threads::side_by_side;
 use crate::transition::{Detail, Goal, Hint, Pilot, Unsolved};
 use quad_dynamics::Motion;
 
@@ -226,10 +227,8 @@ impl Airspace<'_> {
             let batch: Vec<usize> =
                 batch.iter().copied().filter(|&index| race.is_promising(index, detail, to_beat)).collect();
             let solve = |&index: &usize| {
-                let Entrance { entry, lower_bound } = entrances[index];
-                let there = orbit.at(entry);
-                let hint =
-                    race.trajectory(index, detail, to_beat).map_or(Hint::Time(lower_bound), Hint::Neighbour);
+                let there = orbit.at(entrances[index].entry);
+                let hint = race.hint(index, detail, to_beat);
                 self.pilot.draft(here, Goal::Motion(there), &there, hint, (detail, to_beat))
             };
             for (index, solved) in batch.iter().copied().zip(side_by_side(&batch, solve)) {
@@ -311,17 +310,6 @@ impl Airspace<'_> {
         let outcome = outcome_of(&solved);
         (solved.ok(), vec![Candidate { entry: None, outcome }])
     }
-}
-
-/// One after the other, or side by side with the feature `rayon`; the results are in the order of the items.
-pub(crate) fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        items.par_iter().map(work).collect()
-    }
-    #[cfg(not(feature = "rayon"))]
-    items.iter().map(work).collect()
 }
 
 /// What became of the only candidate of a leg.

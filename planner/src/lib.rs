@@ -76,6 +76,7 @@ mod round;
 mod sample;
 mod separation;
 mod sorties;
+mod threads;
 mod time_model;
 mod transition;
 #[cfg(feature = "serde")]

@@ -5,12 +5,13 @@ use crate::bound::Envelope;
 use crate::certificate;
 use crate::circles::{Orbit, orbits};
 use crate::error::{Error, Problem};
-use crate::legs::{Airspace, side_by_side};
+use crate::legs::Airspace;
 use crate::mission::{Mission, Model, Pipeline};
 use crate::options::{Options, Watch};
 use crate::plan::{Leg, Plan, VehiclePlan, Warning};
 use crate::separation::{closest_pair, in_the_air, start_delays};
 use crate::sorties::{self, Flight, share_in_reach};
+use crate::threads::{both, side_by_side};
 use crate::time_model::TimeModel;
 use crate::transition::Pilot;
 use crate::warnings;
@@ -188,14 +189,6 @@ pub(crate) fn calibrated<'a>(
 ) -> TimeModel {
     let solved: Vec<_> = flights.flat_map(|(pad, route, legs)| airspace.solved(pad, route, legs)).collect();
     airspace.time_model().calibrated(&solved)
-}
-
-/// Does two things; with the feature `rayon` side by side.
-fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
-    #[cfg(feature = "rayon")]
-    return rayon::join(a, b);
-    #[cfg(not(feature = "rayon"))]
-    (a(), b())
 }
 
 /// How many vehicles are needed where some fly longer than they can.

@@ -3,7 +3,7 @@
 
 use crate::entry::Entrance;
 use crate::plan::{Candidate, Entry, Outcome, Transition};
-use crate::transition::{Detail, Draft, Unsolved};
+use crate::transition::{Detail, Draft, Hint, Unsolved};
 
 /// How much slower than the fastest sketch of a leg a sketch may be to be drafted: so many seconds, and a share of its time.
 const MARGIN: [f64; 2] = [0.03, 0.002];
@@ -212,21 +212,22 @@ impl<'a> Race<'a> {
         };
     }
 
-    /// What a solve at some detail starts from; `None` for a guess. A first sketch has a guess of its own: a neighbour's trajectory takes no
+    /// What a solve at some detail starts from. A first sketch has a guess of its own: a neighbour's trajectory takes no
     /// less time and leads into the neighbour's local minimum.
-    pub(crate) fn trajectory(&self, index: usize, detail: Detail, to_beat: f64) -> Option<&Transition> {
-        let own = || match &self.standings[index] {
+    pub(crate) fn hint(&self, index: usize, detail: Detail, to_beat: f64) -> Hint<'_> {
+        let own = match &self.standings[index] {
             Standing::Slower(_, draft) | Standing::Solved(_, draft) => Some(draft),
             _ => None,
         };
-        let entry = self.entrances[index].entry;
+        let Entrance { entry, lower_bound } = self.entrances[index];
         let apart = |other: &Entrance| apart(other.entry.angle, entry.angle);
         let nearest = || self.neighbours(entry).min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
-        let draft = match detail {
-            Detail::Sketch => self.better_neighbour(index, to_beat).or_else(own),
-            Detail::Full => own().or_else(|| nearest().map(|(_, draft)| draft)),
+        let neighbour = match (detail, own) {
+            (Detail::Full, Some(draft)) => return Hint::Sketch(draft),
+            (Detail::Full, None) => nearest().map(|(_, draft)| draft),
+            (Detail::Sketch, own) => self.better_neighbour(index, to_beat).or(own),
         };
-        draft.map(|draft| &draft.transition)
+        neighbour.map_or(Hint::Time(lower_bound), |draft| Hint::Neighbour(&draft.transition))
     }
 
     /// The solved candidates whose entries lie up to an eighth of a turn from `entry`, in the same direction.

@@ -1,8 +1,8 @@
 //! What an operator should know of a plan's flights.
 
-use crate::legs::side_by_side;
 use crate::mission::Mission;
 use crate::plan::{Outcome, Plan, Warning};
+use crate::threads::side_by_side;
 use std::collections::BTreeSet;
 
 /// Everything that is to be said of a plan's team and flights.

@@ -57,6 +57,8 @@ pub(super) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
     match (detail, hint) {
         (Detail::Sketch, Hint::Time(about)) => sketch(Hint::Time((about - cruise.time).max(0.0)), to_beat),
         (Detail::Sketch, Hint::Neighbour(it)) => sketch(Hint::Neighbour(&cruise.removed(it)), to_beat),
+        // A sketch without the cruise is no solution on a coarser mesh.
+        (_, Hint::Sketch(sketch)) => whole(Hint::Neighbour(&sketch.transition)),
         (Detail::Full, Hint::Neighbour(_)) => whole(hint),
         (Detail::Full, Hint::Time(about)) => {
             let sketch = sketch(Hint::Time((about - cruise.time).max(0.0)), f64::INFINITY);

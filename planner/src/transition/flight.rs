@@ -11,6 +11,10 @@ pub(crate) trait Flight<const NX: usize, const NU: usize>: Dynamics<NX, NU> + Cl
     /// Its name in the plan.
     const MODEL: Model;
 
+    /// How many bounds and limits are active in a segment of a fast flight, as seen: on average, and at most. Each makes the time of a
+    /// barrier problem longer by about its barrier parameter.
+    const ACTIVE_BOUNDS: [f64; 2] = [1.4, 1.8];
+
     /// The model's state in a motion.
     fn state(&self, motion: &Motion) -> SVector<f64, NX>;
 

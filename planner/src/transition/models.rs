@@ -142,6 +142,7 @@ impl JerkLimitedFlight {
 
 impl Flight<9, 3> for JerkLimitedFlight {
     const MODEL: Model = Model::JerkLimited;
+    const ACTIVE_BOUNDS: [f64; 2] = [1.2, 1.8];
     const ATTITUDE: Option<usize> = None;
 
     fn agility(&self) -> Option<Agility> {
@@ -279,6 +280,7 @@ impl RigidBodyFlight {
 
 impl Flight<13, 4> for RigidBodyFlight {
     const MODEL: Model = Model::RigidBody;
+    const ACTIVE_BOUNDS: [f64; 2] = [3.3, 4.0];
     const ATTITUDE: Option<usize> = Some(6);
 
     fn agility(&self) -> Option<Agility> {

@@ -99,13 +99,19 @@ impl Setting {
         }
     }
 
-    /// Boundaries are where they should be again: with other knots, others touch them.
+    /// With twice as many segments.
     fn divide(&mut self, surroundings: &Surroundings) {
         self.segments *= 2;
-        for keep_out in &mut self.keep_outs {
+        self.keep_outs = self.as_asked(surroundings);
+    }
+
+    /// The keep-outs with their boundaries where they should be again: with other knots, others touch them.
+    pub fn as_asked(&self, surroundings: &Surroundings) -> Vec<KeepOut> {
+        let asked = |keep_out: &KeepOut| {
             let same = surroundings.keep_outs.iter().find(|other| other.centre == keep_out.centre);
-            keep_out.radius = same.map_or(keep_out.radius, |other| other.radius);
-        }
+            *same.unwrap_or(keep_out)
+        };
+        self.keep_outs.iter().map(asked).collect()
     }
 }
 

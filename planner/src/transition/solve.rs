@@ -38,16 +38,16 @@ const OUTER_SEGMENT: f64 = 0.06;
 /// Lagrangian then is from the cost at most; with ten times as much one of fifty legs took a slower entry.
 const NEARLY_STATIONARY: f64 = 3e-4;
 const NEARLY_EQUAL: f64 = 1e-4;
+/// The same of an iterate that may lose, and how far the Lagrangian then is from that time at most (share of it), in dual residuals. From
+/// earlier iterates twelve of a thousand legs took a slower entry.
+const ROUGHLY_STATIONARY: f64 = 1e-3;
+const UNCERTAINTY: f64 = 10.0;
 /// Greatest barrier parameters of sketches and drafts that are good enough, and greatest primal residual, in barrier parameters.
 const SKETCH_MU: f64 = 1e-3;
 const DRAFT_MU: f64 = 1e-5;
 const ENOUGH_PRIMAL: f64 = 20.0;
 /// Greatest regularisation with which they are: with more, directions are left along which the time still falls.
 const ENOUGH_REGULARISATION: f64 = 1e-4;
-/// What a segment's bounds, on controls and height, cost in a barrier problem, in barrier parameters (s): as seen, and at most.
-const BARRIER_COST: f64 = 1.4;
-const GREATEST_BARRIER_COST: f64 = 2.5;
-
 /// Keep-outs at least so far (m) from the straight line are only considered once they have been entered: most never are, and
 /// each makes every solve slower.
 const NEAR: f64 = 2.0;
@@ -143,11 +143,20 @@ pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         Hint::Time(about) => about,
         Hint::Neighbour(neighbour) => {
             if let Some(first) = bent(flight, neighbour, towards)
-                && let Ok(solved) = attempt.keep_clear(first, attempt.near(towards))
+                && let Ok(solved) = attempt.keep_clear(First::Guess(first), attempt.near(towards))
             {
                 return Ok(solved.into());
             }
             neighbour.duration
+        }
+        Hint::Sketch(sketch) => {
+            if let Some(Solved { solution, setting, .. }) = sketch.solved.downcast_ref()
+                && let Ok(solved) =
+                    attempt.keep_clear(First::Coarser(solution), setting.as_asked(surroundings))
+            {
+                return Ok(solved.into());
+            }
+            sketch.transition.duration
         }
     };
     for (straight, stretch, finer) in [(false, 1.2, 1), (true, 1.5, 1), (false, 2.5, 2)] {
@@ -155,7 +164,7 @@ pub(crate) fn draft<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
         let keep_outs = attempt.near(towards);
         let free_yaw = matches!(goal, Goal::Hover(_));
         let first = guess(flight, start, towards, &keep_outs, stretch * about + 0.3, straight, free_yaw);
-        match attempt.keep_clear(first, keep_outs) {
+        match attempt.keep_clear(First::Guess(first), keep_outs) {
             Ok(solved) => return Ok(solved.into()),
             Err(residuals) if residuals.primal_residual <= unsolved.primal_residual => unsolved = residuals,
             Err(_) => {}
@@ -180,18 +189,22 @@ pub(crate) fn polish<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
 
 /// Where a solve starts: at a trajectory, or at a solution on the same mesh with its multipliers. The latter only pays where
 /// little has changed; from one entry to the next it does not.
-enum First<const NX: usize, const NU: usize> {
+enum First<'a, const NX: usize, const NU: usize> {
     Guess(Guess<NX, NU>),
     Solution(Box<Solution<NX, NU>>),
+    /// The solution on a coarser mesh.
+    Coarser(&'a Solution<NX, NU>),
 }
 
 /// What is known of a transition before it is solved.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) enum Hint<'a> {
     /// About how long it takes (s).
     Time(f64),
     /// One that starts in the same motion and ends nearby.
     Neighbour(&'a Transition),
+    /// Its own sketch.
+    Sketch(&'a Draft),
 }
 
 struct Attempt<'a, F> {
@@ -242,7 +255,7 @@ impl<'a, F> Attempt<'a, F> {
     /// Solves, and solves again while a keep-out is entered between the knots.
     fn keep_clear<const NX: usize, const NU: usize>(
         &self,
-        first: Guess<NX, NU>,
+        first: First<NX, NU>,
         keep_outs: Vec<KeepOut>,
     ) -> Result<Solved<NX, NU>, Unsolved>
     where
@@ -250,7 +263,7 @@ impl<'a, F> Attempt<'a, F> {
     {
         let (heights, longest_step, segments) = (self.surroundings.heights, self.longest_step, self.segments);
         let setting = Setting { keep_outs, heights, longest_step, segments };
-        let mut solved = self.solved(First::Guess(first), setting)?;
+        let mut solved = self.solved(first, setting)?;
         for _ in 1..MOST_ROUNDS {
             let Solved { ref mut setting, ref seen, ref transition, .. } = solved;
             if !seen.is_some_and(|seen| setting.put_farther(self.surroundings, transition, &seen)) {
@@ -304,7 +317,9 @@ impl<'a, F> Attempt<'a, F> {
         }
         let mut transition = record::<NX, NU, F>(&solution);
         let time = match solution.log.last() {
-            Some(last) if solution.status == Status::Stopped => expected_time(last, setting.segments),
+            Some(last) if solution.status == Status::Stopped => {
+                last.lagrangian - last.mu * F::ACTIVE_BOUNDS[0] * setting.segments as f64
+            }
             _ => transition.duration,
         };
         if time > self.to_beat {
@@ -330,7 +345,7 @@ impl<'a, F> Attempt<'a, F> {
             Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU).with_warm_mu(WARM_MU);
         options.max_iterations = self.surroundings.most_iterations.unwrap_or(options.max_iterations);
         let workspace = &mut Workspace::new();
-        let watch = |iteration: &Iteration| self.watch(iteration, segments);
+        let watch = |iteration: &Iteration| self.watch(iteration, F::ACTIVE_BOUNDS[1] * segments as f64);
         let transcription = |uniform: f64| match self.surroundings.settings.transcription {
             Transcription::RungeKutta => {
                 traj_opt::Transcription::RungeKutta { substeps: setting.substeps(uniform) }
@@ -352,6 +367,19 @@ impl<'a, F> Attempt<'a, F> {
                     watch,
                 )
             }
+            First::Coarser(coarser) => {
+                let uniform = coarser.final_time() / segments as f64;
+                let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
+                traj_opt::solve_on_mesh(
+                    workspace,
+                    &problem,
+                    coarser,
+                    &mesh,
+                    transcription(uniform),
+                    &options,
+                    watch,
+                )
+            }
             First::Solution(previous) => {
                 let transcription = transcription(previous.final_time() / segments as f64);
                 traj_opt::solve_from(workspace, &problem, previous, transcription, &options, watch)
@@ -360,17 +388,20 @@ impl<'a, F> Attempt<'a, F> {
         solved.ok()
     }
 
-    /// Ends a solve once the time of its barrier problem is known, if what the barrier costs does not make a candidate fast enough that
-    /// loses, or good enough to be compared: an estimate, and no proof, because the problem is not convex.
-    fn watch(&self, iteration: &Iteration, segments: usize) -> ControlFlow<()> {
+    /// Ends a solve that loses: the time of its barrier problem, as far as it is known, less what so many active bounds cost, is more than
+    /// what is to be beaten. Ends one that is good enough to be compared once that time is known. An estimate, and no proof, because
+    /// the problem is not convex.
+    fn watch(&self, iteration: &Iteration, active_bounds: f64) -> ControlFlow<()> {
         let Iteration { objective, lagrangian, mu, residuals, regularisation, .. } = *iteration;
+        let least = lagrangian - mu * active_bounds;
+        let loses = residuals.dual < ROUGHLY_STATIONARY
+            && least > self.to_beat * (1.0 + UNCERTAINTY * residuals.dual);
         let is_known =
             residuals.dual < NEARLY_STATIONARY && (lagrangian - objective).abs() < NEARLY_EQUAL * objective;
-        let loses = lagrangian - mu * GREATEST_BARRIER_COST * segments as f64 > self.to_beat;
         let is_enough = self.enough_mu.is_some_and(|enough| {
             mu < enough && residuals.primal < ENOUGH_PRIMAL * enough && regularisation < ENOUGH_REGULARISATION
         });
-        if is_known && (loses || is_enough) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if loses || is_known && is_enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn look<const NX: usize, const NU: usize>(&self, transition: &Transition) -> Option<Examination>
@@ -397,11 +428,6 @@ impl<'a, F> Attempt<'a, F> {
             }
         }
     }
-}
-
-/// How long the flight takes at the solution to which an iterate is on the way (s).
-fn expected_time(iteration: &Iteration, segments: usize) -> f64 {
-    iteration.lagrangian - iteration.mu * BARRIER_COST * segments as f64
 }
 
 /// Residuals of a solve that is of no use.
@@ -441,4 +467,69 @@ fn complete(transition: &mut Transition, seen: &Examination, miss: Miss) {
     transition.max_speed = seen.max_speed;
     transition.max_tilt = seen.max_tilt;
     transition.miss = miss;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transition::models::{JerkLimitedFlight, PointMassFlight, RigidBodyFlight, ThrustRateFlight};
+    use nalgebra::Vector3;
+    use quad_dynamics::{Vehicle, VehicleParameters};
+
+    /// What the bounds of a segment cost in the barrier problems on the way to a solution, in barrier parameters.
+    fn costs<const NX: usize, const NU: usize, F: Flight<NX, NU>>(
+        flight: &F,
+        ends: &[Motion; 2],
+    ) -> Vec<f64> {
+        let settings = TransitionSettings { model: F::MODEL, ..TransitionSettings::default() };
+        let surroundings = Surroundings {
+            keep_outs: &[],
+            heights: [0.0, 100.0],
+            settings: &settings,
+            most_iterations: None,
+        };
+        let [start, end] = ends;
+        let goal = Goal::Motion(*end);
+        let attempt = Attempt::new(flight, start, goal, &surroundings, Detail::Full, f64::INFINITY);
+        let attempt = Attempt { enough_mu: None, ..attempt };
+        let first = guess(flight, start, end, &[], 6.0, false, false);
+        let solved = attempt.keep_clear(First::Guess(first), Vec::new()).map_err(|_| "no solution").unwrap();
+        let (time, n) = (solved.solution.final_time(), solved.solution.mesh().n_segments() as f64);
+        let nearly = |it: &&Iteration| {
+            (1e-4..1e-3).contains(&it.mu) && it.residuals.dual < 1e-3 && it.residuals.primal < 1e-3
+        };
+        let cost = |it: &Iteration| (it.lagrangian - time) / (it.mu * n);
+        solved.solution.log.iter().filter(nearly).map(cost).collect()
+    }
+
+    /// A candidate is given up on the strength of the greater number: no barrier may cost more.
+    #[test]
+    fn bounds_cost_what_the_models_say() {
+        let vehicle = Vehicle::new(VehicleParameters::survey_450()).expect("a preset");
+        let (settings, calm) = (TransitionSettings::default(), Vector3::zeros());
+        let mut seen = [const { Vec::new() }; 4];
+        for (east, north) in [(15.0, 4.0), (40.0, -30.0), (0.0, 120.0)] {
+            let ends = [Vector3::new(0.0, 0.0, 5.0), Vector3::new(east, north, 6.0)]
+                .map(|place| Motion::hover(&vehicle, place, 0.5));
+            seen[0].extend(costs(&PointMassFlight::new(&vehicle, &settings, calm), &ends));
+            seen[1].extend(costs(&JerkLimitedFlight::new(&vehicle, &settings, calm), &ends));
+            seen[2].extend(costs(&ThrustRateFlight::new(&vehicle, &settings, calm), &ends));
+            seen[3].extend(costs(&RigidBodyFlight::new(&vehicle, &settings, calm, &[]), &ends));
+        }
+        let said = [
+            PointMassFlight::ACTIVE_BOUNDS,
+            JerkLimitedFlight::ACTIVE_BOUNDS,
+            ThrustRateFlight::ACTIVE_BOUNDS,
+            RigidBodyFlight::ACTIVE_BOUNDS,
+        ];
+        for (seen, [mean, most]) in seen.iter().zip(said) {
+            assert!(!seen.is_empty());
+            for cost in seen {
+                assert!(
+                    *cost <= most && (cost - mean).abs() < 0.4 * mean,
+                    "{cost} for {mean}, at most {most}"
+                );
+            }
+        }
+    }
 }
