@@ -385,6 +385,42 @@ mod tests {
         assert!(!proof.is_consistent && !proof.is_optimal_within(1e300));
     }
 
+    /// Whatever range is asked for, and wherever it begins or ends in a cell: the cells that are passed over hold nothing that is less.
+    #[test]
+    fn cells_pass_over_nothing() {
+        const N: u32 = 40;
+        let points: Vec<[f64; 2]> = (0..N).map(|i| [f64::from(i), 0.3 * f64::from(i * i % 7)]).collect();
+        let numbers: Vec<usize> = (0..points.len()).collect();
+        let family = Family {
+            vertex: numbers.clone(),
+            number: numbers,
+            radius: (0..N).map(|i| f64::from(i * 5 % 11)).collect(),
+            range: vec![],
+            children: vec![],
+            around: vec![],
+        };
+        let metric = crate::Points(&points);
+        let mut cells = Cells::new(&points, &family);
+        let mut compare = |number: usize, own: Range<usize>, within: Range<usize>| {
+            for around in [0.0, 1.5] {
+                let question = Question { number, own: &own, within: &within, around };
+                let [found, all] = [
+                    cells.least(&family, &metric, &question, f64::INFINITY),
+                    AllPairs.least(&family, &metric, &question, f64::INFINITY),
+                ];
+                assert_eq!(found, all, "{number} of {own:?} in {within:?}");
+            }
+        };
+        for number in 0..points.len() {
+            for start in 0..=number {
+                for end in number + 1..=points.len() {
+                    compare(number, start..end, 0..points.len());
+                    compare(number, number..number + 1, start..end);
+                }
+            }
+        }
+    }
+
     /// An optimum on whole distances, where its duals are exact, with `shift` added to the dual of every vertex.
     fn shifted(places: &[i32], shift: f64) -> (Matching, Certificate) {
         let distance = |i: usize, j: usize| f64::from((places[i] - places[j]).abs());
