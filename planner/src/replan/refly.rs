@@ -18,15 +18,10 @@ pub(super) fn fly(
     settled: &Settled,
     changes: &Changes,
 ) -> Result<Option<Vec<Leg>>, Error> {
-    let gone = &changes.gone;
-    let keeps = !changes.wind
-        && !settled.open.iter().any(|circle| gone.contains(circle))
-        && planned.route.ends_with(&settled.open)
-        && settled.legs.len() + settled.open.len() == planned.route.len()
-        && (settled.legs.len()..planned.legs.len()).all(|leg| !enters(skies, planned, leg, changes));
-    if settled.landed || keeps {
+    if settled.landed || keeps_all(skies, planned, settled, changes) {
         return Ok(None);
     }
+    let gone = &changes.gone;
     let Settled { mut legs, broken_off, here, mut time, open, .. } = settled.clone();
     let now = skies.now();
     let taken_off = here.is_some();
@@ -59,15 +54,8 @@ pub(super) fn fly(
         here = orbit.exit(entry);
         airspace = now;
     }
-    let kept = planned.legs.last().filter(|leg| {
-        let from = planned.legs.len().checked_sub(2).map(|before| &planned.legs[before]);
-        let stays = |from: &&Leg| from.loiter.is_some_and(|loiter| !gone.contains(&loiter.circle));
-        let same = from.filter(stays).is_some_and(|from| skies.start(planned, Some(from), time) == here);
-        same && !changes.wind
-            && leg.loiter.is_none()
-            && broken_off.is_none()
-            && !enters(skies, planned, planned.legs.len() - 1, changes)
-    });
+    let stays = broken_off.is_none();
+    let kept = stays.then(|| unchanged_home(skies, planned, &here, time, changes)).flatten();
     let (transition, candidates) = match kept {
         Some(leg) => (Some(leg.transition.clone()), leg.candidates.clone()),
         None => airspace.to_pad(&here, planned.pad),
@@ -78,6 +66,15 @@ pub(super) fn fly(
     let (start_time, transition) = joined(skies, planned, &legs, broken_off, time, transition);
     legs.push(Leg { start_time, transition, loiter: None, candidates });
     Ok(Some(legs))
+}
+
+/// Whether all that is ahead of a vehicle can be flown as planned.
+fn keeps_all(skies: &Skies, planned: &VehiclePlan, settled: &Settled, changes: &Changes) -> bool {
+    !changes.wind
+        && !settled.open.iter().any(|circle| changes.gone.contains(circle))
+        && planned.route.ends_with(&settled.open)
+        && settled.legs.len() + settled.open.len() == planned.route.len()
+        && (settled.legs.len()..planned.legs.len()).all(|leg| !enters(skies, planned, leg, changes))
 }
 
 /// The entries of the open circles: as planned where there is a plan, else the best between their neighbours.
@@ -133,6 +130,21 @@ fn unchanged<'a>(
     }
     let start = skies.start(planned, before, planned.legs[index].start_time);
     (start == *here && !enters(skies, planned, index, changes)).then(|| &planned.legs[index])
+}
+
+/// The planned way home, if it starts in this very motion, unless it now enters a safe distance.
+fn unchanged_home<'a>(
+    skies: &Skies,
+    planned: &'a VehiclePlan,
+    here: &Motion,
+    time: f64,
+    changes: &Changes,
+) -> Option<&'a Leg> {
+    let [.., from, home] = &planned.legs[..] else { return None };
+    let stays = from.loiter.is_some_and(|loiter| !changes.gone.contains(&loiter.circle));
+    let same = stays && skies.start(planned, Some(from), time) == *here;
+    let clear = || !enters(skies, planned, planned.legs.len() - 1, changes);
+    (same && !changes.wind && home.loiter.is_none() && clear()).then_some(home)
 }
 
 /// A leg's start and its transition, with what was flown before it was broken off in front.

@@ -353,32 +353,18 @@ impl<'a, F> Attempt<'a, F> {
             Transcription::HermiteSimpson => traj_opt::Transcription::HermiteSimpson,
             Transcription::Trapezoidal => traj_opt::Transcription::Trapezoidal,
         };
+        let graded = |final_time: f64| {
+            let uniform = final_time / segments as f64;
+            (Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform), transcription(uniform))
+        };
         let solved = match first {
             First::Guess(guess) => {
-                let uniform = guess.final_time() / segments as f64;
-                let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
-                traj_opt::solve_with(
-                    workspace,
-                    &problem,
-                    &mesh,
-                    transcription(uniform),
-                    guess,
-                    &options,
-                    watch,
-                )
+                let (mesh, how) = graded(guess.final_time());
+                traj_opt::solve_with(workspace, &problem, &mesh, how, guess, &options, watch)
             }
             First::Coarser(coarser) => {
-                let uniform = coarser.final_time() / segments as f64;
-                let mesh = Mesh::graded(segments, 1.0 - OUTER_SEGMENT / uniform);
-                traj_opt::solve_on_mesh(
-                    workspace,
-                    &problem,
-                    coarser,
-                    &mesh,
-                    transcription(uniform),
-                    &options,
-                    watch,
-                )
+                let (mesh, how) = graded(coarser.final_time());
+                traj_opt::solve_on_mesh(workspace, &problem, coarser, &mesh, how, &options, watch)
             }
             First::Solution(previous) => {
                 let transcription = transcription(previous.final_time() / segments as f64);

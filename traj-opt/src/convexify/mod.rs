@@ -202,7 +202,7 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
         let (scale, gradient) = (memory.variable_scale.clone(), memory.lin.objective.clone());
         let (residual, row_scale) = (residual_vector(memory, &memory.values), row_scales(memory));
         let before = self.merit();
-        let mut model = Subproblem {
+        let model = Subproblem {
             gradient: &gradient,
             curvature,
             jacobian,
@@ -218,15 +218,11 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
             self.radius *= SHRINK;
             return if self.radius < LEAST_RADIUS { Step::None } else { Step::Refused };
         };
-        let length = |d: &[f64]| {
-            let size = |i: usize| if scale[i] > 0.0 { (d[i] / scale[i]).abs() } else { 0.0 };
-            (0..n_trusted).map(size).fold(0.0, f64::max)
-        };
         let zero = vec![0.0; scale.len()];
         let (value, left) = model.model(&answer.step, self.penalty);
         let (now, violation) = model.model(&zero, self.penalty);
         let predicted = now - value;
-        let held = length(&answer.step) > 0.9 * self.radius;
+        let held = model.length(&answer.step) > 0.9 * self.radius;
         let stuck = predicted <= ROUNDING * (1.0 + before.abs());
         if left > options.tolerance
             && left > 0.5 * violation
@@ -241,28 +237,8 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
             return Step::None;
         }
         let origin = self.memory.w.clone();
-        let mut ratio = (before - self.try_step(&origin, &answer.step)) / predicted;
-        let mut taken = answer;
-        if ratio < POOR {
-            // the residual at the end of the step, less what the linearisation says of it, stands for the curvature
-            let mut corrected = residual_vector(&self.memory, &self.memory.values);
-            jacobian.iter().for_each(|(row, column, v)| corrected[row] -= v * taken.step[column]);
-            model.residual = &corrected;
-            if let Some(second) = model.solve(self.penalty, self.radius) {
-                let other = (before - self.try_step(&origin, &second.step)) / predicted;
-                if other > ratio {
-                    (ratio, taken) = (other, second);
-                } else {
-                    self.try_step(&origin, &taken.step);
-                }
-            }
-        }
-        let length = length(&taken.step);
-        if ratio < POOR || ratio.is_nan() {
-            self.radius = SHRINK * self.radius.min(length);
-        } else if ratio > GOOD && held {
-            self.radius = (GROW * self.radius).min(GREATEST_RADIUS);
-        }
+        let (ratio, taken) = self.tried(&model, answer, &origin, (before, predicted));
+        self.adapt_radius(ratio, model.length(&taken.step), held);
         if ratio > TAKEN {
             self.adopt(taken);
             return Step::Taken;
@@ -270,6 +246,41 @@ impl<const NX: usize, const NU: usize, P: Problem<NX, NU>> Method<'_, NX, NU, P>
         self.memory.w.copy_from_slice(&origin);
         self.evaluate();
         if self.radius < LEAST_RADIUS { Step::None } else { Step::Refused }
+    }
+
+    /// By the ratio of actual to predicted reduction of a step of some length, which the radius held back or not.
+    fn adapt_radius(&mut self, ratio: f64, length: f64, held: bool) {
+        if ratio < POOR || ratio.is_nan() {
+            self.radius = SHRINK * self.radius.min(length);
+        } else if ratio > GOOD && held {
+            self.radius = (GROW * self.radius).min(GREATEST_RADIUS);
+        }
+    }
+
+    /// Moves along the step of a subproblem, or along its second-order correction where the merit falls far less than predicted and that one
+    /// does better; returns the ratio of reductions and the step.
+    fn tried(
+        &mut self,
+        model: &Subproblem,
+        answer: Answer,
+        origin: &[f64],
+        (before, predicted): (f64, f64),
+    ) -> (f64, Answer) {
+        let ratio = (before - self.try_step(origin, &answer.step)) / predicted;
+        if ratio >= POOR || ratio.is_nan() {
+            return (ratio, answer);
+        }
+        // the residual at the end of the step, less what the linearisation says of it, stands for the curvature
+        let mut residual = residual_vector(&self.memory, &self.memory.values);
+        model.jacobian.iter().for_each(|(row, column, v)| residual[row] -= v * answer.step[column]);
+        let corrected = Subproblem { residual: &residual, ..*model };
+        let Some(second) = corrected.solve(self.penalty, self.radius) else { return (ratio, answer) };
+        let other = (before - self.try_step(origin, &second.step)) / predicted;
+        if other > ratio {
+            return (other, second);
+        }
+        self.try_step(origin, &answer.step);
+        (ratio, answer)
     }
 
     /// Moves to `origin + d`, with slacks at the values of their functions; returns the merit there.

@@ -56,6 +56,12 @@ struct Rows {
 }
 
 impl Subproblem<'_> {
+    /// Scaled greatest entry of a step, of the variables that the radius limits.
+    pub fn length(&self, d: &[f64]) -> f64 {
+        let size = |i: usize| if self.scale[i] > 0.0 { (d[i] / self.scale[i]).abs() } else { 0.0 };
+        (0..self.n_trusted).map(size).fold(0.0, f64::max)
+    }
+
     /// Cost of the model after a step, relative to the iterate's, with the weighted violation that it leaves.
     pub fn model(&self, d: &[f64], penalty: f64) -> (f64, f64) {
         let linear: f64 = self.gradient.iter().zip(d).map(|(g, d)| g * d).sum();
