@@ -389,33 +389,37 @@ mod tests {
     #[test]
     fn cells_pass_over_nothing() {
         const N: u32 = 40;
-        let points: Vec<[f64; 2]> = (0..N).map(|i| [f64::from(i), 0.3 * f64::from(i * i % 7)]).collect();
+        let points: Vec<[f64; 2]> =
+            (0..N).map(|i| [0.4 * f64::from(i), 0.1 * f64::from(i * i % 7)]).collect();
         let numbers: Vec<usize> = (0..points.len()).collect();
-        let family = Family {
+        let family = |unit: f64| Family {
             vertex: numbers.clone(),
-            number: numbers,
-            radius: (0..N).map(|i| f64::from(i * 5 % 11)).collect(),
+            number: numbers.clone(),
+            radius: (0..N).map(|i| unit * f64::from(i * 5 % 11)).collect(),
             range: vec![],
             children: vec![],
             around: vec![],
         };
-        let metric = crate::Points(&points);
-        let mut cells = Cells::new(&points, &family);
-        let mut compare = |number: usize, own: Range<usize>, within: Range<usize>| {
-            for around in [0.0, 1.5] {
-                let question = Question { number, own: &own, within: &within, around };
-                let [found, all] = [
-                    cells.least(&family, &metric, &question, f64::INFINITY),
-                    AllPairs.least(&family, &metric, &question, f64::INFINITY),
-                ];
-                assert_eq!(found, all, "{number} of {own:?} in {within:?}");
-            }
-        };
-        for number in 0..points.len() {
-            for start in 0..=number {
-                for end in number + 1..=points.len() {
-                    compare(number, start..end, 0..points.len());
-                    compare(number, number..number + 1, start..end);
+        // radii that outweigh distances, and none
+        for family in [family(1.0), family(0.0)] {
+            let metric = crate::Points(&points);
+            let mut cells = Cells::new(&points, &family);
+            let mut compare = |number: usize, own: Range<usize>, within: Range<usize>| {
+                for around in [0.0, 1.5] {
+                    let question = Question { number, own: &own, within: &within, around };
+                    let [found, all] = [
+                        cells.least(&family, &metric, &question, f64::INFINITY),
+                        AllPairs.least(&family, &metric, &question, f64::INFINITY),
+                    ];
+                    assert_eq!(found, all, "{number} of {own:?} in {within:?}");
+                }
+            };
+            for number in 0..points.len() {
+                for start in 0..=number {
+                    for end in number + 1..=points.len() {
+                        compare(number, start..end, 0..points.len());
+                        compare(number, number..number + 1, start..end);
+                    }
                 }
             }
         }
