@@ -123,13 +123,8 @@ pub fn solve_from<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let program = transcribe(problem, mesh, transcription, &guess);
     let memory = &mut workspace.memory;
     let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut monitor;
-    if memory.start_at(&program, &previous.point, options) {
-        let outcome = memory.run(&program, options, true, &mut *monitor);
-        if outcome.status.is_success() || outcome.status == Status::Stopped {
-            return Ok(extract(&program, memory, &outcome));
-        }
-    }
-    solve_with(workspace, problem, mesh, transcription, &guess, options, monitor)
+    let is_warm = memory.start_at(&program, &previous.point, options);
+    go_on(workspace, &program, is_warm, &guess, options, monitor)
 }
 
 /// Solves on another mesh what `coarser` solves on its own, starting from its primal and dual variables with the barrier parameter
@@ -157,15 +152,30 @@ pub fn solve_on_mesh<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
     let program = transcribe(problem, mesh, transcription, &guess);
     let memory = &mut workspace.memory;
     let monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()> = &mut monitor;
+    let is_warm = memory.start_on_finer(&program, coarser, &guess, options);
+    go_on(workspace, &program, is_warm, &guess, options, monitor)
+}
+
+/// Runs on from multipliers, and anew from the guess where there are none or they turn out badly.
+fn go_on<const NX: usize, const NU: usize, P: Problem<NX, NU>>(
+    workspace: &mut Workspace<NX, NU>,
+    program: &Program<NX, NU, P>,
+    is_warm: bool,
+    guess: &Guess<NX, NU>,
+    options: &Options,
+    monitor: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+) -> Result<Solution<NX, NU>, Error> {
+    let memory = &mut workspace.memory;
     let mut spent = 0;
-    if memory.start_on_finer(&program, coarser, &guess, options) {
-        let outcome = memory.run(&program, options, true, &mut *monitor);
+    if is_warm {
+        let outcome = memory.run(program, options, true, &mut *monitor);
         if outcome.status.is_success() || outcome.status == Status::Stopped {
-            return Ok(extract(&program, memory, &outcome));
+            return Ok(extract(program, memory, &outcome));
         }
         spent = outcome.iterations;
     }
-    let mut solution = solve_with(workspace, problem, mesh, transcription, &guess, options, monitor)?;
+    let Program { problem, mesh, transcription, .. } = *program;
+    let mut solution = solve_with(workspace, problem, mesh, transcription, guess, options, monitor)?;
     solution.iterations += spent;
     Ok(solution)
 }
