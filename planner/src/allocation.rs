@@ -75,7 +75,7 @@ impl<'a> Routing<'a> {
         Ok(solution.routes.into_iter().map(to_circles).collect())
     }
 
-    /// The better routes of two searches side by side, which are as good as those of one that is twice as long.
+    /// The better routes of two searches side by side, which share the iterations.
     fn searched(&self, problem: &Problem<LegTimes>) -> Result<Solution, mtsp::Error> {
         let search = |seed: u64| {
             let options =

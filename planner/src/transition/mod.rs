@@ -11,6 +11,7 @@
 //! | looking at the result between the knots, without the solver | `examine.rs` |
 
 mod cruise;
+mod early_end;
 mod examine;
 mod flight;
 mod guess;

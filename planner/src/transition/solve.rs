@@ -1,5 +1,6 @@
 //! The paper's minimum-time transition: solved, looked at between the knots, and solved again where that is not enough.
 
+use super::early_end::{self, EarlyEnd};
 use super::examine::{Examination, examine, miss};
 use super::flight::Flight;
 use super::guess::{bent, guess};
@@ -9,7 +10,6 @@ use crate::mission::{Transcription, TransitionSettings};
 use crate::plan::{Entry, Miss, Outcome, SolverStatus, Transition};
 use quad_dynamics::Motion;
 use std::any::Any;
-use std::ops::ControlFlow;
 use traj_opt::{Guess, Iteration, Mesh, Options, Solution, Status, Workspace};
 
 /// Solves of one transition with enlarged keep-outs, narrowed heights or finer steps.
@@ -34,20 +34,6 @@ const LEAST_SEGMENTS: usize = 10;
 /// Length (s) that the outermost segments of a mesh should not exceed: a bang-bang flip of the attitude takes 0.2 s.
 const OUTER_SEGMENT: f64 = 0.06;
 
-/// Dual residual of an iterate whose Lagrangian tells the time of the solution of its barrier problem, and how far (share of it) the
-/// Lagrangian then is from the cost at most; with ten times as much one of fifty legs took a slower entry.
-const NEARLY_STATIONARY: f64 = 3e-4;
-const NEARLY_EQUAL: f64 = 1e-4;
-/// The same of an iterate that may lose, and how far the Lagrangian then is from that time at most (share of it), in dual residuals. From
-/// earlier iterates twelve of a thousand legs took a slower entry.
-const ROUGHLY_STATIONARY: f64 = 1e-3;
-const UNCERTAINTY: f64 = 10.0;
-/// Greatest barrier parameters of sketches and drafts that are good enough, and greatest primal residual, in barrier parameters.
-const SKETCH_MU: f64 = 1e-3;
-const DRAFT_MU: f64 = 1e-5;
-const ENOUGH_PRIMAL: f64 = 20.0;
-/// Greatest regularisation with which they are: with more, directions are left along which the time still falls.
-const ENOUGH_REGULARISATION: f64 = 1e-4;
 /// Keep-outs at least so far (m) from the straight line are only considered once they have been entered: most never are, and
 /// each makes every solve slower.
 const NEAR: f64 = 2.0;
@@ -231,8 +217,8 @@ impl<'a, F> Attempt<'a, F> {
         let all = surroundings.settings.segments;
         let few = (SKETCH_SHARE * all as f64).round().max(LEAST_SEGMENTS as f64) as usize;
         let (enough_mu, segments, longest_step) = match detail {
-            Detail::Full => (DRAFT_MU, all, LONGEST_FIRST_STEP),
-            Detail::Sketch => (SKETCH_MU, few, LONGEST_SKETCH_STEP),
+            Detail::Full => (early_end::DRAFT_MU, all, LONGEST_FIRST_STEP),
+            Detail::Sketch => (early_end::SKETCH_MU, few, LONGEST_SKETCH_STEP),
         };
         let enough_mu = Some(enough_mu);
         Self { flight, start, goal, surroundings, enough_mu, to_beat, segments, longest_step }
@@ -345,7 +331,12 @@ impl<'a, F> Attempt<'a, F> {
             Options::default().with_tolerance(TOLERANCE).with_initial_mu(FIRST_MU).with_warm_mu(WARM_MU);
         options.max_iterations = self.surroundings.most_iterations.unwrap_or(options.max_iterations);
         let workspace = &mut Workspace::new();
-        let watch = |iteration: &Iteration| self.watch(iteration, F::ACTIVE_BOUNDS[1] * segments as f64);
+        let early_end = EarlyEnd {
+            to_beat: self.to_beat,
+            enough_mu: self.enough_mu,
+            active_bounds: F::ACTIVE_BOUNDS[1] * segments as f64,
+        };
+        let watch = |iteration: &Iteration| early_end.watch(iteration);
         let transcription = |uniform: f64| match self.surroundings.settings.transcription {
             Transcription::RungeKutta => {
                 traj_opt::Transcription::RungeKutta { substeps: setting.substeps(uniform) }
@@ -372,22 +363,6 @@ impl<'a, F> Attempt<'a, F> {
             }
         };
         solved.ok()
-    }
-
-    /// Ends a solve that loses: the time of its barrier problem, as far as it is known, less what so many active bounds cost, is more than
-    /// what is to be beaten. Ends one that is good enough to be compared once that time is known. An estimate, and no proof, because
-    /// the problem is not convex.
-    fn watch(&self, iteration: &Iteration, active_bounds: f64) -> ControlFlow<()> {
-        let Iteration { objective, lagrangian, mu, residuals, regularisation, .. } = *iteration;
-        let least = lagrangian - mu * active_bounds;
-        let loses = residuals.dual < ROUGHLY_STATIONARY
-            && least > self.to_beat * (1.0 + UNCERTAINTY * residuals.dual);
-        let is_known =
-            residuals.dual < NEARLY_STATIONARY && (lagrangian - objective).abs() < NEARLY_EQUAL * objective;
-        let is_enough = self.enough_mu.is_some_and(|enough| {
-            mu < enough && residuals.primal < ENOUGH_PRIMAL * enough && regularisation < ENOUGH_REGULARISATION
-        });
-        if loses || is_known && is_enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn look<const NX: usize, const NU: usize>(&self, transition: &Transition) -> Option<Examination>
