@@ -25,6 +25,7 @@ fn thousands_of_targets_round_the_depot() {
             bounds.makespan <= flown.makespan && bounds.total_cost <= whole.total_cost,
             "{bounds:?} {flown:?}"
         );
+        // the ascent on tours that see the depot once converges slowly on a ring: 0.88 after its sixty iterations
         assert!(bounds.total_cost > 0.85 * whole.total_cost, "{bounds:?} {whole:?}");
         assert!(bounds.makespan >= bounds.total_cost / vehicles as f64 * (1.0 - 1e-9), "{bounds:?}");
         assert!(bounds.makespan >= radius(&problem), "{bounds:?}");
